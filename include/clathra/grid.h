@@ -34,6 +34,8 @@ PetscErrorCode GridShares(PetscMPIInt size, const PetscInt cells[], GridShareFn 
 /* Borders along an axis of so many cells, start[nproc + 1], that part the load of its columns of cells (NULL: the same
    in each) as evenly as whole columns and three nodes a rank allow. */
 void GridEvenBorders(PetscInt cells, const PetscInt *load, PetscInt nproc, PetscInt *start);
+/* Of all ranks the struct whose first member, a double, is largest; bytes: its size.  Collective. */
+PetscErrorCode GridShareLargest(MPI_Comm comm, void *largest, size_t bytes);
 /* Are these borders of all ranks, with three nodes for each along a shared axis? */
 bool GridSound(const Grid *g, const PetscInt nproc[], PetscInt *const start[]);
 /* Shares the grid out anew, start[CL_DIM][nproc + 1] being the first nodes of the boxes of ranks and the end:

@@ -17,15 +17,15 @@ typedef struct {
   double  drain;  /* share per time of the heat that hybrid left (69) given in this step: 1 over its length, 1/s */
   double *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
   double *u_star; /* [n_local][CL_DIM] starred displacement, m */
-  double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
+  double *m_star; /* [n][TRIAL_MASSES] starred masses m_h, m_w, m_g, kg */
   SkeletonStage *k_star; /* [n] starred state of the skeleton; null: that of t_n */
 } Stage;
 
-enum { TRIAL_PLASTIC = 1 + CL_TENSOR };
+enum { TRIAL_MASSES = 3, TRIAL_SCALARS = 4, TRIAL_PLASTIC = 1 + CL_TENSOR };
 /* Result of a stage on the particles, before any commit. */
 typedef struct {
-  double        *m;   /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
-  double        *y;   /* [n][4] p_w, p_g, T, S_h */
+  double        *m;   /* [n][TRIAL_MASSES] m_h; m_w, m_g less what Newton left in the rows (28), kg */
+  double        *y;   /* [n][TRIAL_SCALARS] p_w, p_g, T, S_h */
   double        *u;   /* [n][CL_DIM] displacement of the step so far, m */
   double        *v;   /* [n][CL_DIM] skeleton velocity, m/s */
   SkeletonStage *end; /* [n] of the skeleton; null where it holds no history */

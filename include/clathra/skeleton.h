@@ -155,13 +155,13 @@ static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock 
 /* The end of a stage as the body lay at t_n; volume V, m^3. */
 void SkeletonEndStage(const SkeletonHistory *h, const SkeletonStep *d, const SkeletonState *s, double V,
                       SkeletonStage *end);
-/* y_n + c (y_1 - y_n); c dimensionless. */
+/* Adds c (y_1 - y_n) to star; c dimensionless. */
 static inline void SkeletonStar(const SkeletonStage *y_n, const SkeletonStage *y_1, double c, SkeletonStage *star)
 {
   const double *n = (const double *)y_n, *one = (const double *)y_1;
 
   for (size_t k = 0; k < sizeof(*star) / sizeof(double); k++)
-    ((double *)star)[k] = n[k] + c * (one[k] - n[k]);
+    ((double *)star)[k] += c * (one[k] - n[k]);
 }
 
 /* Outside the block forms of the laws the only functions that read and write the history of particle q; the stress

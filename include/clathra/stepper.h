@@ -88,15 +88,18 @@ typedef struct {
   Peak     peak;
 } StepInfo;
 
-/* Work space of a step, sized for the particles and nodes of this configuration. */
+#define DIRK_STAGES 4 /* of a Runge-Kutta method, at most */
+/* Work space of an implicit step, sized for the particles, nodes and stages of this configuration. */
 typedef struct {
   double        *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
-  double        *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
+  double        *x_stage[DIRK_STAGES]; /* x at the end of each stage but the last */
+  double        *m_star, *rates, *v_n; /* [n][TRIAL_MASSES], [n][TRIAL_SCALARS], [n][CL_DIM] */
   SkeletonStage *k_star;               /* [n]; null where the skeleton holds no history */
   double        *e_plastic;            /* [n][5] errors of Trial.s; null without plasticity */
-  Trial          trial[2];
+  Trial          trial[DIRK_STAGES];
   double         drain; /* of the stages to come, 1/s */
   PetscInt       cap_nodes, cap_particles;
+  int            stages;
 } StepperWork;
 
 /* What one attempt at a step found. */
@@ -123,17 +126,22 @@ typedef struct {
 
 typedef struct Stepper Stepper;
 
-/* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step
-   that failed. The implicit schemes share StepperImplicitStep and give it `step`: one attempt of length dt on the
-   configuration that ModelBeginStep prepared, which leaves the solution in work.x and the rates in work.rates and
-   commits nothing. */
+/* A diagonally implicit Runge-Kutta method whose last stage ends the step; dimensionless. */
 typedef struct {
-  Integrator kind;
-  int        error_order; /* q: the error estimate behaves like dt^q */
-  bool       looks_back;  /* the estimate compares with the step before: there is none at the start */
-  int        stages;
+  int    stages;
+  double a[DIRK_STAGES][DIRK_STAGES]; /* rates k_1, k_2, ... of a row's stage; the last row weighs those of the step */
+  /* Weights of k_n, k_1, k_2, ... that the error is estimated against; right behind a start or a kink, without k_n: a's
+     last row if there is no estimate then. */
+  double embedded[DIRK_STAGES + 1], embedded_fresh[DIRK_STAGES + 1];
+  int    error_order; /* q: the estimate behaves like dt^q */
+} Tableau;
+
+/* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step
+   that failed. */
+typedef struct {
+  Integrator     kind;
+  const Tableau *tableau; /* of an implicit scheme, whose advance is StepperImplicitStep; else null */
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
-  PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);
   /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
   PetscErrorCode (*create)(Stepper *s);
   PetscErrorCode (*destroy)(Stepper *s);
@@ -208,6 +216,7 @@ PetscErrorCode StepperReady(Stepper *s, bool *ok);
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
 /* ---- stages.c: docs/architecture.md, "Stages of a case" */
+const StepperScheme *StepperSchemeOf(Integrator kind); /* auto: the one of its implicit steps */
 /* Takes stage k's case, integrator and step control; the state stays as it is. */
 PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k);
 /* At the end of a stage that is not the last: the next one begins. */
@@ -339,7 +348,12 @@ PetscErrorCode StepperCountLeaving(Stepper *s);
 void StepperErrors(const StepperState *z, const ModelTotals *now, double error[3]);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
-/* The advance of schemes that have a `step`: attempts, control of their length, commit.  Collective. */
+/* One attempt of length dt (s) at a step of the scheme's tableau on the configuration that ModelBeginStep prepared:
+   leaves the solution in work.x and the rates in work.rates and commits nothing.  Collective. */
+PetscErrorCode StepperDirkStep(Stepper *s, double dt, Attempt *a);
+/* Has the next step no estimate of its error? */
+bool StepperBlind(const Stepper *s);
+/* The advance of schemes that have a tableau: attempts, control of their length, commit.  Collective. */
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);
 /* energy.c: the mechanical balance (90).  What the particles hold at the start; what the works of an accepted step made
    of it; what a change of materials does.  Collective. */
@@ -351,21 +365,16 @@ PetscErrorCode StepperEnergyChange(Stepper *s);
 /* Frees the arrays of a work space. */
 PetscErrorCode StepperFreeWork(StepperWork *w);
 /* In words, for messages. */
-const char    *StepperStatusName(ClStatus st);
-const char    *StepperName(const Stepper *s);       /* of the integrator that works now */
-PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
+const char *StepperStatusName(ClStatus st);
+const char *StepperName(const Stepper *s); /* of the integrator that works now */
+const Tableau *
+StepperTableau(const Stepper *s); /* of the implicit steps of this run, or of those that auto would take */
 /* p_w, p_g, T, S_h of particle p at t_n (Pa, degC, 1) and their rates in the last step (per s); zero where there is no
  * such field. */
-void   StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
-double StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
-/* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight dt
-   is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
+void StepperHistory(const Model *m, PetscInt p, double y[TRIAL_SCALARS], double rate[TRIAL_SCALARS]);
+/* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight
+   (s) is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
-/* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma, dimensionless. */
-void StepperStarSkeleton(Stepper *s, double c);
-/* Rates of plastic strain and stress at the end of a step of length dt (s) whose stages have length gamma dt, and their
-   errors from the weights of k_n, k_1, k_2 (25), (26). */
-void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
-/* Dimensionless, over the tolerances.  Collective; e [n][4] (Pa, Pa, K, 1), eu [n][2] (m); a->rules says which error it
- * is, a->peak where the largest of any field is. */
+/* Dimensionless, over the tolerances.  Collective; e [n][TRIAL_SCALARS] (Pa, Pa, K, 1), eu [n][CL_DIM] (m); a->rules
+ * says which error it is, a->peak where the largest of any field is. */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);

@@ -65,7 +65,7 @@ static PetscErrorCode Farthest(const Model *m, Border *most)
       Look(m, p, x0, l, d, 1.0, most);
     }
   }
-  PetscCall(StepperShareLargest(m->grid.comm, most, sizeof(*most)));
+  PetscCall(GridShareLargest(m->grid.comm, most, sizeof(*most)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -100,8 +100,8 @@ PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
   }
-  PetscCall(StepperShareLargest(f->comm, &high, sizeof(Most)));
-  PetscCall(StepperShareLargest(f->comm, &low, sizeof(Most)));
+  PetscCall(GridShareLargest(f->comm, &high, sizeof(Most)));
+  PetscCall(GridShareLargest(f->comm, &low, sizeof(Most)));
   const double apart = high.value + low.value;
 
   if (!FarApart(&w, apart))
@@ -175,8 +175,8 @@ static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles 
     MostTake(&b->high, c, P, p, e, pg);
     MostTake(&b->low, c, P, p, -e, pg);
   }
-  PetscCall(StepperShareLargest(comm, &b->high, sizeof(Most)));
-  PetscCall(StepperShareLargest(comm, &b->low, sizeof(Most)));
+  PetscCall(GridShareLargest(comm, &b->high, sizeof(Most)));
+  PetscCall(GridShareLargest(comm, &b->low, sizeof(Most)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->fastest, 1, MPI_DOUBLE, MPI_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -249,7 +249,7 @@ PetscErrorCode FindingsFindUnstableHydrate(Findings *f, FindingId id)
     mass[1] += P->f[P_MH][p];
     MostTake(&worst, c, P, p, over, mean);
   }
-  PetscCall(StepperShareLargest(f->comm, &worst, sizeof(Most)));
+  PetscCall(GridShareLargest(f->comm, &worst, sizeof(Most)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, f->comm));
   if (worst.value <= OUTSIDE)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -299,7 +299,7 @@ static PetscErrorCode FindForming(MPI_Comm comm, const Scene *c, const Particles
       continue;
     MostTake(worst, c, P, p, EquilibriumTemperature(law, p_mean) - T, p_mean);
   }
-  PetscCall(StepperShareLargest(comm, worst, sizeof(Most)));
+  PetscCall(GridShareLargest(comm, worst, sizeof(Most)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

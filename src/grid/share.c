@@ -1,6 +1,7 @@
 /* Which rank has which nodes: boxes between borders that run through the whole grid.  DMDA decides nothing but
    neighbours and ghosts. */
 #include "clathra/grid.h"
+#include <string.h>
 
 #define LEAST_NODES 3 /* of a rank along an axis: the stencil is two wide */
 
@@ -207,4 +208,19 @@ PetscMPIInt GridBoxOwner(const PetscInt nproc[], PetscInt *const start[], const 
 PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[])
 {
   return GridBoxOwner(g->nproc, g->start, cell);
+}
+
+PetscErrorCode GridShareLargest(MPI_Comm comm, void *largest, size_t bytes)
+{
+  struct {
+    double value;
+    int    rank;
+  } best;
+
+  PetscFunctionBeginUser;
+  memcpy(&best.value, largest, sizeof(best.value));
+  PetscCallMPI(MPI_Comm_rank(comm, &best.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(largest, (PetscMPIInt)bytes, MPI_BYTE, best.rank, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

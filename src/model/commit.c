@@ -157,7 +157,7 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
 
       for (int ph = 0; ph < PHASE_COUNT; ph++) {
         if (fs->phase[ph])
-          masses[3 * p + 1 + ph] -= share * *RowOf(m, m->f, r.node[a], F_PW + ph);
+          masses[TRIAL_MASSES * p + 1 + ph] -= share * *RowOf(m, m->f, r.node[a], F_PW + ph);
       }
     }
   }
@@ -204,12 +204,12 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     Velocity(m, p, x, &trial->v[CL_DIM * p]);
     CheckMotion(m, p, &trial->u[CL_DIM * p]);
     for (int k = 0; k < 3; k++)
-      trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
+      trial->m[TRIAL_MASSES * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
     for (int k = 0; k < 3; k++)
-      trial->y[4 * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
+      trial->y[TRIAL_SCALARS * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
     if (m->P.f[P_PG])
-      trial->y[4 * p + 1] = GasToBe(in[IN_P], in[IN_P + 1]);
-    trial->y[4 * p + 3] = s.Sh;
+      trial->y[TRIAL_SCALARS * p + 1] = GasToBe(in[IN_P], in[IN_P + 1]);
+    trial->y[TRIAL_SCALARS * p + 3] = s.Sh;
     if (trial->end)
       trial->end[p] = s.end;
     if (trial->s)
@@ -449,9 +449,9 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
     PetscCheck(ParticleEvaluate(m, p, x, false, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "an accepted state is not admissible");
     for (int k = 0; m->P.f[P_RATE] && k < 4; k++)
-      m->P.f[P_RATE + k][p] = rates[4 * p + k];
-    s.m_w = trial->m[3 * p + 1];
-    s.m_g = trial->m[3 * p + 2];
+      m->P.f[P_RATE + k][p] = rates[TRIAL_SCALARS * p + k];
+    s.m_w = trial->m[TRIAL_MASSES * p + 1];
+    s.m_g = trial->m[TRIAL_MASSES * p + 2];
     if (trial->s) {
       m->P.f[P_WP][p] += trial->end[p].work;
       m->P.f[P_HEAT][p] = 0.0; /* the stages gave it */

@@ -210,7 +210,7 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   if (h->ambient)
     ParticleCentroid(&m->grid, &m->P, p, &m->stencil[p], h->x);
   for (int k = 0; k < 3; k++) {
-    h->m_star[k] = m->stage.m_star[3 * p + k];
+    h->m_star[k] = m->stage.m_star[TRIAL_MASSES * p + k];
     h->shift[k]  = fs->at[F_PW + k] >= 0 ? s->S[GIVE_START + k] - OwnValue(m, p, F_PW + k) : 0.0;
   }
   if (fs->solid) {

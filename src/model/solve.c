@@ -217,29 +217,27 @@ PetscErrorCode ModelReadySolver(Model *m)
 static PetscErrorCode FindWorst(Model *m, int *field)
 {
   struct {
-    double value;
-    int    rank;
-  } local          = {-1.0, m->grid.rank}, worst;
+    double value, at[CL_DIM];
+    int    field;
+  } worst          = {.value = -1.0};
   const PetscInt n = m->c->fields.n;
   const double  *a;
-  double         at[CL_DIM + 1] = {0.0}; /* and the field */
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
-    if (!(fabs(a[k]) > local.value))
+    if (!(fabs(a[k]) > worst.value))
       continue;
-    local.value = fabs(a[k]);
+    worst.value = fabs(a[k]);
+    worst.field = m->c->fields.field[k % n];
     for (int d = 0; d < CL_DIM; d++)
-      at[d] = GridNode(&m->grid, d, m->map.ij[k / n][d]);
-    at[CL_DIM] = (double)m->c->fields.field[k % n];
+      worst.at[d] = GridNode(&m->grid, d, m->map.ij[k / n][d]);
   }
   PetscCall(VecRestoreArrayRead(m->solver->R, &a));
-  PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
-  PetscCallMPI(MPI_Bcast(at, CL_DIM + 1, MPI_DOUBLE, worst.rank, m->grid.comm));
+  PetscCall(GridShareLargest(m->grid.comm, &worst, sizeof(worst)));
   for (int d = 0; d < CL_DIM; d++)
-    m->failure.where[d] = at[d];
-  *field = (int)at[CL_DIM];
+    m->failure.where[d] = worst.at[d];
+  *field = worst.field;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,7 +246,7 @@ static PetscErrorCode Explain(Model *m)
 {
   KSP                ksp;
   KSPConvergedReason linear;
-  int                field;
+  int                field = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelReduceStatus(m, &m->failure.status));

@@ -374,7 +374,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   PetscCall(FindStart(run));
   if (run->check) {
     PetscCall(PetscOptionsHasHelp(NULL, &help));
-    if (help && (s->scheme->step || s->auto_.on))
+    if (help && (s->scheme->tableau || s->auto_.on))
       PetscCall(ModelReadySolver(s->model));
     *exit_code = CL_EXIT_OK;
     PetscFunctionReturn(PETSC_SUCCESS);

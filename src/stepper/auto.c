@@ -152,7 +152,7 @@ static PetscErrorCode StepThatWouldDo(Stepper *s, double *dt)
     const double rate = sqrt(sum.change[k] / sum.n) / (z->t - s->auto_.good_t);
 
     if (rate > 0.0)
-      *dt = fmin(*dt, pow(s->tol, 1.0 / StepperScheme_Sdirk2.error_order) * scale[k] / rate);
+      *dt = fmin(*dt, pow(s->tol, 1.0 / StepperTableau(s)->error_order) * scale[k] / rate);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +166,7 @@ static PetscErrorCode GoOver(Stepper *s, int kind, double dt, bool *ok)
   PetscFunctionBeginUser;
   if (s->scheme->destroy)
     PetscCall(s->scheme->destroy(s));
-  s->scheme = kind == AUTO_HYBRID ? &StepperScheme_Hybrid : &StepperScheme_Sdirk2;
+  s->scheme = StepperSchemeOf(kind == AUTO_HYBRID ? INTEGRATOR_HYBRID : INTEGRATOR_AUTO);
   z->kind   = kind;
   z->votes  = 0;
   z->since  = z->t;
@@ -255,7 +255,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
     z->spent    = 0.0;
   }
   if (z->kind == AUTO_HYBRID)
-    s->scheme = &StepperScheme_Hybrid;
+    s->scheme = StepperSchemeOf(INTEGRATOR_HYBRID);
   PetscCall(
       PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", StepperName(s), s->auto_.on ? ", for now" : ""));
   const char *word; /* stabilisations that implicit steps have alone */

@@ -9,7 +9,7 @@
 static double Unforeseen(const Stepper *s, PetscInt p, double dt)
 {
   const Model  *m = s->model;
-  const double *u = s->work.trial[s->scheme->stages - 1].u, *v = s->work.v_n;
+  const double *u = s->work.trial[s->scheme->tableau->stages - 1].u, *v = s->work.v_n;
   double        most = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {

@@ -269,8 +269,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
 
 #define WITHOUT_MATRIX(integrator)                                                                                     \
   {                                                                                                                    \
-    .kind = (integrator), .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready,       \
-    .check = Check                                                                                                     \
+    .kind = (integrator), .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready, .check = Check     \
   }
 
 const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX(INTEGRATOR_HYBRID);

@@ -15,16 +15,15 @@
 #define MULTIGRID (CL_DIM == 3 ? 20e-6 : 2.5e-6) /* s an unknown and Jacobian: GMRES with multigrid */
 #define SMOOTH_STEPS 1e2                         /* (317): an adaptive run whose loads are slow, at ... */
 #define SMOOTH_TOL 1e-3                          /* ... this tolerance, ... */
-#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then */
-#define NEWTON_REACTS 2.3        /* Jacobians a stage there */
-#define NEWTON_DONOR 5.0         /* ... with donors of gas (332), each with a factorisation of its own */
-#define BEHIND_KINK 12.0         /* steps that a kink adds */
-#define PERIOD 30.0              /* steps in a period of a condition's waves, at SMOOTH_TOL */
-#define MARKS 8.0                /* ... in which so many of them are stops */
-#define MOST_STRETCHES 2000      /* ... looked at */
-#define EULER_POWER (-1.0 / 6.0) /* of tol: n of order 1 goes with tol^(-1/2), of order 2 with tol^(-1/3) */
-#define TRANSITS 100.0           /* waves matter in a run that is no longer than so many of their transits ... */
-#define PER_TRANSIT 40.0         /* ... and want so many steps each */
+#define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define NEWTON_REACTS 2.3   /* Jacobians a stage there */
+#define NEWTON_DONOR 5.0    /* ... with donors of gas (332), each with a factorisation of its own */
+#define BEHIND_KINK 12.0    /* steps that a kink adds */
+#define PERIOD 30.0         /* steps in a period of a condition's waves, at SMOOTH_TOL */
+#define MARKS 8.0           /* ... in which so many of them are stops */
+#define MOST_STRETCHES 2000 /* ... looked at */
+#define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0    /* ... and want so many steps each */
 
 static double Extent(const Scene *c)
 {
@@ -101,7 +100,7 @@ static double ImplicitSteps(const Stepper *s, double left)
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
   const double finer  = cbrt(SMOOTH_TOL / s->tol);
-  const double first  = s->scheme->stages == 1 ? pow(s->tol, EULER_POWER) : 1.0; /* order 1 wants more of them */
+  const double first  = pow(s->tol, 1.0 / 3.0 - 1.0 / StepperTableau(s)->error_order); /* n goes with tol^(-1/q) */
   const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer * sqrt(first);
   const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * first * Periods(s, left));
   const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* N of (317) */
@@ -149,7 +148,7 @@ PetscErrorCode StepperForecast(Stepper *s)
     f->hybrid_seconds = StepperHybridWork(m, f->hybrid_steps);
   }
   f->implicit_steps   = ImplicitSteps(s, left);
-  const double stages = f->implicit_steps * s->scheme->stages;
+  const double stages = f->implicit_steps * StepperTableau(s)->stages;
   const bool   donor  = SceneDonor(m->c) && FrontsRule(s);
   const double newton = stages * (donor ? NEWTON_DONOR : FrontsRule(s) ? NEWTON_REACTS : STEPPER_NEWTON);
 

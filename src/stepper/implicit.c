@@ -18,7 +18,8 @@ PetscErrorCode StepperFreeWork(StepperWork *w)
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(w->x, w->x_star, w->u_star));
   PetscCall(PetscFree3(w->m_star, w->rates, w->v_n));
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < w->stages; k++) {
+    PetscCall(PetscFree(w->x_stage[k]));
     PetscCall(PetscFree4(w->trial[k].m, w->trial[k].y, w->trial[k].u, w->trial[k].v));
     PetscCall(PetscFree(w->trial[k].end));
     PetscCall(PetscFree2(w->trial[k].s, w->trial[k].k));
@@ -26,43 +27,50 @@ PetscErrorCode StepperFreeWork(StepperWork *w)
   PetscCall(PetscFree(w->k_star));
   PetscCall(PetscFree(w->e_plastic));
   w->cap_nodes = w->cap_particles = 0;
+  w->stages                       = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SizeWork(Stepper *s)
 {
-  StepperWork   *w = &s->work;
-  const PetscInt n = s->model->P.cap, N = s->model->map.n_local;
+  StepperWork    *w  = &s->work;
+  const FieldSet *fs = &s->model->c->fields;
+  const PetscInt  n = s->model->P.cap, N = s->model->map.n_local;
+  const int       stages = s->scheme->tableau->stages;
 
   PetscFunctionBeginUser;
-  if (n <= w->cap_particles && N <= w->cap_nodes)
+  if (n <= w->cap_particles && N <= w->cap_nodes && stages == w->stages)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperFreeWork(w));
-  PetscCall(
-      PetscCalloc3(N * s->model->c->fields.n, &w->x, N * s->model->c->fields.n, &w->x_star, N * CL_DIM, &w->u_star));
-  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, CL_DIM * n, &w->v_n));
-  for (int k = 0; k < 2; k++)
-    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, CL_DIM * n, &w->trial[k].u, CL_DIM * n,
-                           &w->trial[k].v));
-  const unsigned has = s->model->c->fields.has;
-  for (int k = 0; k < 2 && (has & HAS_HISTORY); k++)
-    PetscCall(PetscCalloc1(n, &w->trial[k].end));
-  for (int k = 0; k < 2 && (has & HAS_PLASTIC); k++)
-    PetscCall(PetscCalloc2(TRIAL_PLASTIC * n, &w->trial[k].s, TRIAL_PLASTIC * n, &w->trial[k].k));
-  if (has & HAS_HISTORY)
+  PetscCall(PetscCalloc3(N * fs->n, &w->x, N * fs->n, &w->x_star, N * CL_DIM, &w->u_star));
+  PetscCall(PetscCalloc3(TRIAL_MASSES * n, &w->m_star, TRIAL_SCALARS * n, &w->rates, CL_DIM * n, &w->v_n));
+  for (int k = 0; k < stages; k++) {
+    Trial *to = &w->trial[k];
+
+    if (k < stages - 1)
+      PetscCall(PetscCalloc1(N * fs->n, &w->x_stage[k]));
+    PetscCall(
+        PetscCalloc4(TRIAL_MASSES * n, &to->m, TRIAL_SCALARS * n, &to->y, CL_DIM * n, &to->u, CL_DIM * n, &to->v));
+    if (fs->has & HAS_HISTORY)
+      PetscCall(PetscCalloc1(n, &to->end));
+    if (fs->has & HAS_PLASTIC)
+      PetscCall(PetscCalloc2(TRIAL_PLASTIC * n, &to->s, TRIAL_PLASTIC * n, &to->k));
+  }
+  if (fs->has & HAS_HISTORY)
     PetscCall(PetscCalloc1(n, &w->k_star));
-  if (has & HAS_PLASTIC)
+  if (fs->has & HAS_PLASTIC)
     PetscCall(PetscCalloc1(TRIAL_PLASTIC * n, &w->e_plastic));
+  w->stages        = stages;
   w->cap_nodes     = N;
   w->cap_particles = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
+void StepperHistory(const Model *m, PetscInt p, double y[TRIAL_SCALARS], double rate[TRIAL_SCALARS])
 {
-  static const int held[4] = {P_PW, P_PG, P_T, P_SH};
+  static const int held[TRIAL_SCALARS] = {P_PW, P_PG, P_T, P_SH};
 
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < TRIAL_SCALARS; k++) {
     y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
     rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
   }
@@ -70,30 +78,6 @@ void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
     y[1] = GasToBe(y[0], y[1]);
 }
 
-double StepperMass(const Model *m, PetscInt p, int k)
-{
-  return m->P.f[P_MH + k] ? m->P.f[P_MH + k][p] : 0.0;
-}
-
-PetscErrorCode StepperStartFromHistory(Stepper *s)
-{
-  const Model *m = s->model;
-  StepperWork *w = &s->work;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, ModelStart(m), m->map.n_local * m->c->fields.n));
-  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int k = 0; k < 3; k++)
-      w->m_star[3 * p + k] = StepperMass(m, p, k);
-    if (w->k_star)
-      w->k_star[p] = ModelSkeletonStart(m, p);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One backward-Euler stage from the starred values in the work space; weight x dt' is its share of the step's
- * integrals. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a)
 {
   Model       *m     = s->model;
@@ -120,7 +104,7 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
   if (a->status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
   a->limited += m->limited;
-  StepperCount(m->c, &rates, weight * dt, a);
+  StepperCount(m->c, &rates, weight, a);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,9 +124,9 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
   for (PetscInt p = 0; p < m->P.n; p++) {
     double square[STEPPER_ERRORS] = {0.0};
 
-    for (int k = 0; k < 4; k++)
-      square[k] = PetscSqr(e[4 * p + k]);
-    square[4] = VectorDot(&eu[CL_DIM * p], &eu[CL_DIM * p]);
+    for (int k = 0; k < TRIAL_SCALARS; k++)
+      square[k] = PetscSqr(e[TRIAL_SCALARS * p + k]);
+    square[TRIAL_SCALARS] = VectorDot(&eu[CL_DIM * p], &eu[CL_DIM * p]);
     for (int k = 0; s->work.e_plastic && k < TRIAL_PLASTIC; k++)
       square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[TRIAL_PLASTIC * p + k]);
     for (int k = 0; k < STEPPER_ERRORS; k++) {
@@ -157,7 +141,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
     }
   }
   sum[STEPPER_ERRORS] = (double)m->P.n;
-  if (StepperShareLargest(m->grid.comm, &a->peak, sizeof(a->peak)) ||
+  if (GridShareLargest(m->grid.comm, &a->peak, sizeof(a->peak)) ||
       MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
   a->rules = 0;
@@ -194,9 +178,9 @@ void StepperBoundWords(int bound, char words[48])
    which of the two it is. */
 static double Controller(const Stepper *s, double dt, const Attempt *a, int *bound)
 {
-  const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
-  const bool   blind     = s->state.fresh && s->scheme->looks_back; /* no estimate yet */
-  const bool   hard      = a->newton > EASY_NEWTON * s->scheme->stages || s->state.hold > 0;
+  const double q = s->scheme->tableau->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
+  const bool   blind     = StepperBlind(s);
+  const bool   hard      = a->newton > EASY_NEWTON * s->scheme->tableau->stages || s->state.hold > 0;
   const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
   const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);
   const double fit       = blind ? INFINITY : SAFE * dt * gain;
@@ -266,7 +250,7 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
 
   PetscFunctionBeginUser;
   PetscCall(StepperUnseen(s, dt, &unseen));
-  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, unseen));
+  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->tableau->stages - 1], s->work.rates, unseen));
   z->uneven_total += s->model->uneven;
   z->step++;
   z->t += dt;
@@ -285,7 +269,7 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
    last step), which no dt mends. */
 static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, double err_old)
 {
-  return err_old > 0.0 && dt < dt_old && err > err_old * pow(dt / dt_old, 0.25 * s->scheme->error_order);
+  return err_old > 0.0 && dt < dt_old && err > err_old * pow(dt / dt_old, 0.25 * s->scheme->tableau->error_order);
 }
 
 /* Is the error of an attempt small enough, noise, or, at dt_min, to be put up with? */
@@ -308,7 +292,7 @@ static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt 
    (422). */
 static double Retry(const Stepper *s, double dt, double err, double dt_old, double err_old)
 {
-  const double order = s->scheme->error_order;
+  const double order = s->scheme->tableau->error_order;
 
   if (!(err_old > err))
     return dt * fmax(LEAST_CUT, SAFE * pow(err, -1.0 / order));
@@ -362,7 +346,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
 
     PetscCall(PetscArraycpy(s->work.x, ModelStart(m), m->map.n_local * m->c->fields.n));
     s->work.drain = 1.0 / dt;
-    PetscCall(s->scheme->step(s, dt, &a));
+    PetscCall(StepperDirkStep(s, dt, &a));
     s->auto_.newton += a.newton;
     s->auto_.dt = dt;
     if (a.status == CL_OK)

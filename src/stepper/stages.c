@@ -7,7 +7,17 @@ static const StepperScheme *const schemes[INTEGRATOR_COUNT] = {
     [INTEGRATOR_HYBRID]   = &StepperScheme_Hybrid,
     [INTEGRATOR_EXPLICIT] = &StepperScheme_Explicit,
     [INTEGRATOR_PAPER]    = &StepperScheme_Paper,
-    [INTEGRATOR_AUTO]     = &StepperScheme_Sdirk2}; /* until the forecast is known */
+    [INTEGRATOR_AUTO]     = &StepperScheme_Sdirk2}; /* until the forecast is known, and in turn with hybrid */
+
+const StepperScheme *StepperSchemeOf(Integrator kind)
+{
+  return schemes[kind];
+}
+
+const Tableau *StepperTableau(const Stepper *s)
+{
+  return s->scheme->tableau ? s->scheme->tableau : schemes[INTEGRATOR_AUTO]->tableau;
+}
 
 const char *StepperName(const Stepper *s)
 {
@@ -50,7 +60,7 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
 
   PetscFunctionBeginUser;
   s->model->c     = &c->scene;
-  s->scheme       = schemes[c->integrator];
+  s->scheme       = StepperSchemeOf(c->integrator);
   s->adaptive     = c->adaptive;
   s->dt_min       = c->dt_min;
   s->dt_max       = c->dt_max;

@@ -74,7 +74,7 @@ static PetscErrorCode Prepare(Stepper *s, bool *ok)
     PetscCall(s->scheme->create(s));
   if (s->scheme->ready)
     PetscCall(s->scheme->ready(s, ok));
-  if (s->scheme->step || s->auto_.on)
+  if (s->scheme->tableau || s->auto_.on)
     PetscCall(ModelPrintSolver(s->model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -193,7 +193,6 @@ compiled, complaints = in_space(tree)
 check_true("the files of the program of three axes compile without a warning", compiled > 10 and not complaints, f"{compiled}\n{complaints[:2000]}")
 
 BP2 = [ROOT / "cases" / "bp2", "-mat_sediment_kinetics_active", "no", "-time_end", "100 s", "-output_times", "100 s", "-stepper_adapt", "no"]
-STEPS = {"euler2": "10 s", "euler": "5 s"}
 
 # a law: k falls faster than with Kozeny and Carman's (phi^1.5 at first order), so less water leaves
 plain = run(binary(), *BP2, "-stepper_type", "euler", "-stepper_dt", "5 s")
@@ -241,11 +240,6 @@ again = run(extended, *WIDE, "-restart", half.out / "checkpoint.h5", out=half.ou
 apart = run(extended, *WIDE, ranks=2).snapshot(100.0)
 check_true("variable of nine components: restart and two ranks", np.array_equal(wide["wide"], again["wide"]) and np.array_equal(wide["wide"], apart["wide"]))
 
-# an integrator: the same stages as backward Euler with half the step, but for the basis frozen over both
-two = run(extended, *BP2, "-stepper_type", "euler2", "-stepper_dt", "10 s")
-p = {name: r.probe(r.probe_names[0])["p_Pa"][-1] for name, r in (("euler2", two), ("euler", plain))}
-check("integrator: p against euler with half the step, relative", abs(p["euler2"] / p["euler"] - 1), 1e-4)
-
 # a boundary condition: a thin black body cools as dT/dt = -eps sigma T^4/(rho c L), which has a closed form
 case = tree / "plate.yaml"
 case.write_text(SCENE)
@@ -255,6 +249,18 @@ for kind, options in (("sdirk2", ()), ("hybrid", ("-stepper_type", "hybrid", "-g
     t, T = plate.time, plate.probe("middle")["T_degC"] + 273.15
     exact = (773.15**-3 + 3 * rate * t) ** (-1 / 3)
     check(f"condition: T of a plate that radiates into space, {kind} (K)", np.max(np.abs(T - exact)), 0.5)
+    if kind == "sdirk2":  # an integrator: order by self-convergence, control of its error, and under auto
+        fixed = ("-stepper_adapt", "no", "-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9")
+        for name, bar in (("sdirk2", (1.8, 2.3)), ("sdirk3", (2.7, 3.3))):
+            ends = [run(extended, case, *fixed, "-stepper_type", name, "-stepper_dt", f"{dt} s").probe("middle")["T_degC"][-1] for dt in (1000, 500, 250)]
+            check(f"integrator: order in time of {name}", np.log2(abs(np.diff(ends)[0] / np.diff(ends)[1])), bar)
+        third = run(extended, case, "-stepper_type", "auto")
+        T3 = third.probe("middle")["T_degC"] + 273.15
+        check("integrator: T of the plate, steps by its error (K)", np.max(np.abs(T3 - (773.15**-3 + 3 * rate * third.time) ** (-1 / 3))), 0.5)
+        check_true("integrator: auto takes it in turn with hybrid", "integrator chosen: sdirk3" in third.output and "  sdirk3 from" in third.output)
+        two, three = [run(extended, *BP2, "-stepper_type", name, "-stepper_dt", "10 s") for name in ("sdirk2", "sdirk3")]
+        ends = [r.snapshot(100.0) for r in (two, three)]
+        check("integrator: p and u of BP2 against sdirk2, relative", max(np.max(np.abs(ends[1][q] - ends[0][q])) / np.max(np.abs(ends[0][q])) for q in ("p", "displacement")), 1e-3)
     # a finding: said once where it is found, and kept for the summary
     told = T.min() < 773.15 - 100
     said = [text.count("clathra: note: particles cooled by") for text in (plate.output, (plate.out / "summary.txt").read_text(), (plate.out / "log.txt").read_text())]
@@ -270,6 +276,7 @@ case.write_text(CLAY)
 clay = run(extended, case)
 last, probe = clay.snapshot(1.0), clay.probe("m")
 check("clay: all-round compression, volume in log strain", np.max(np.abs(last["log_J"] / -(200e3 / K + LAMBDA * np.log(2.0)) - 1)), 1e-6)
+check("clay: the same in three stages of sdirk3", np.max(np.abs(run(extended, case, "-stepper_type", "sdirk3").snapshot(1.0)["log_J"] / last["log_J"] - 1)), 1e-6)
 check("clay: p_c is the pressure", np.max(np.abs(last["p_c"] / 300e3 - 1)), 1e-6)
 check("clay: p_c of a probe before it yields is the start's", abs(probe["p_c_Pa"][1] / 150e3 - 1), 1e-12)
 check_true("clay: p_c in XDMF and checkpoint", "p_c" in (clay.out / "particles.xdmf").read_text() and b"p_c" in (clay.out / "checkpoint.h5").read_bytes())
