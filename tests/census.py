@@ -50,11 +50,11 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 242,
     "... that choose numerics": 18,
-    "lines of C in src and include": 44576,  # 93 more: the table of findings and what says them
-    f"functions with {MANY} parameters or more": 43,
+    "lines of C in src and include": 44642,  # 66 more: tableaux of any number of stages, structs in place of long lists of parameters
+    f"functions with {MANY} parameters or more": 21,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
-    "words of docs and README": 39980,
+    "words of docs and README": 39906,
     "words of the equations": 11913,
     "files in scripts": 13,
 }

@@ -156,10 +156,19 @@ typedef struct {
 } FaceOutput;
 /* Is something prescribed on it, or counted?  Else FaceEvaluate finds nothing: most of a surface is left alone. */
 bool FaceActs(const Scene *c, const Face *f);
-/* Sh: of its particle at t_n; velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
-void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
-                  FaceOutput *o);
+/* What a face is evaluated with. */
+typedef struct {
+  const Scene    *c;
+  const Face     *f;
+  const BcValues *v;
+  const Material *mat;           /* of its particle */
+  const double   *p0;            /* [PHASE_COUNT] initial pressures at the face, Pa */
+  const double   *in;            /* [IN_COUNT] */
+  const double   *velocity;      /* [CL_DIM] of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt */
+  double          Sh, kappa, dt; /* of its particle at t_n, W/(m K), s */
+} FaceInput;
+/* In SI units. */
+void FaceEvaluate(const FaceInput *x, FaceOutput *o);
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);

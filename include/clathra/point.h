@@ -72,6 +72,14 @@ typedef struct {
   double         x[CL_DIM]; /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
+/* What PointEvaluate is given. */
+typedef struct {
+  const FieldSet     *fs;
+  const Material     *mat;
+  const PointHistory *h;
+  const double       *in; /* [IN_COUNT] */
+} PointInput;
+
 /* State at the end of the stage. */
 typedef struct {
   double        V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
@@ -97,12 +105,14 @@ typedef struct {
    not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
    written.  tangent = false leaves D, dJ and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why
    pointing to a sentence. */
-ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
-                       bool tangent, PointState *state, PointOutput *o, const char **why);
+ClStatus PointEvaluate(const PointInput *x, bool tangent, PointState *state, PointOutput *o, const char **why);
 
-/* Masses of a new particle from (phi, S_h, s_g, p_w, p_g, T); kg. */
-void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
-                        double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g);
+/* A new particle: m^3, shares, Pa, degC. */
+typedef struct {
+  double V, phi, Sh, sg, pw, pg, T;
+} PointStart;
+/* Its masses m_s, m_h, m_w, m_g, kg. */
+void PointInitialMasses(const FieldSet *fs, const Material *mat, const PointStart *x, double m[4]);
 
 /* Methane of a unit of open pore space beside hydrate of S_h, kg/m^3 (101), with its slopes in p_w and p_g. */
 double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT]);
@@ -122,7 +132,10 @@ typedef struct {
   double compressibility;                      /* sum over pi of that in a pressure that both have, 1/Pa */
   double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
-/* At V (m^3), masses m_s, m_h (kg), p_w, p_g (Pa), T (degC). Returns why the state is inadmissible, with a sentence in
- * *why; r is not to be used then. */
-ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, PointProperties *r, const char **why);
+/* What a particle holds: m^3, kg, Pa, degC. */
+typedef struct {
+  double V, m_s, m_h, pw, pg, T;
+} PointContents;
+/* Returns why the state is inadmissible, with a sentence in *why; r is not to be used then. */
+ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, const PointContents *x, PointProperties *r,
+                                 const char **why);

@@ -107,13 +107,18 @@ INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, do
   return (Driving){p, p.v > pe, ReactionWithoutGas(trace, pw, pg)};
 }
 
-/* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); K_d and p_e (Pa) with their slopes in T. */
-INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double held, const Driving *d, double Kd, double dKd_dT,
-                             double pe, double dpe_dT)
-{
-  const double c = dt * k->M_h / (1.0 + held), drive = pe - d->p.v;
+/* A number with its slope in T (1/K). */
+typedef struct {
+  double v, T;
+} OfTemperature;
 
-  return (Growth){-c * Kd * drive, c * Kd, -c * (dKd_dT * drive + Kd * dpe_dT)};
+/* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); p_e in Pa. */
+INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double held, const Driving *d, OfTemperature Kd,
+                             OfTemperature pe)
+{
+  const double c = dt * k->M_h / (1.0 + held), drive = pe.v - d->p.v;
+
+  return (Growth){-c * Kd.v * drive, c * Kd.v, -c * (Kd.T * drive + Kd.v * pe.T)};
 }
 
 /* (12): what a particle that holds `from` (kg) gains, with its slope in a = dt' M_h K_d A_geo (p_e - p)/rho_h >= 0. */

@@ -140,7 +140,7 @@ typedef struct {
    that failed. */
 typedef struct {
   Integrator     kind;
-  const Tableau *tableau; /* of an implicit scheme, whose advance is StepperImplicitStep; else null */
+  const Tableau *tableau; /* of an implicit scheme, which StepperImplicitStep advances; else null, and ... */
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
   /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
   PetscErrorCode (*create)(Stepper *s);
@@ -348,6 +348,9 @@ PetscErrorCode StepperCountLeaving(Stepper *s);
 void StepperErrors(const StepperState *z, const ModelTotals *now, double error[3]);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
+/* Norm (292), over the tolerance, of the errors e [n][TRIAL_SCALARS] (Pa, Pa, K, 1), eu [n][CL_DIM] (m) and those of
+   plastic states; a->rules says which it is, a->peak where the largest of any is.  Collective. */
+double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);
 /* One attempt of length dt (s) at a step of the scheme's tableau on the configuration that ModelBeginStep prepared:
    leaves the solution in work.x and the rates in work.rates and commits nothing.  Collective. */
 PetscErrorCode StepperDirkStep(Stepper *s, double dt, Attempt *a);
@@ -375,6 +378,3 @@ void StepperHistory(const Model *m, PetscInt p, double y[TRIAL_SCALARS], double 
 /* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight
    (s) is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
-/* Dimensionless, over the tolerances.  Collective; e [n][TRIAL_SCALARS] (Pa, Pa, K, 1), eu [n][CL_DIM] (m); a->rules
- * says which error it is, a->peak where the largest of any field is. */
-double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);

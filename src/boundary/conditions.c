@@ -80,12 +80,20 @@ static void Act(const FaceState *x, FaceOutput *o)
   o->enthalpy = CarriedOut(x, o->outflow);
 }
 
-void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
-                  FaceOutput *o)
+void FaceEvaluate(const FaceInput *g, FaceOutput *o)
 {
-  FaceState x = {
-      .c = c, .f = f, .v = v, .mat = mat, .p0 = p0, .in = in, .Sh = Sh, .kappa = kappa, .dt = dt, .T = in[IN_T]};
+  const Face   *f  = g->f;
+  const double *in = g->in;
+  FaceState     x  = {.c     = g->c,
+                      .f     = f,
+                      .v     = g->v,
+                      .mat   = g->mat,
+                      .p0    = g->p0,
+                      .in    = in,
+                      .Sh    = g->Sh,
+                      .kappa = g->kappa,
+                      .dt    = g->dt,
+                      .T     = in[IN_T]};
 
   for (int d = 0; d < CL_DIM; d++) {
     x.T += in[IN_GT + d] * f->r[d];
@@ -99,14 +107,14 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
   }
   if (VectorDot(f->n, f->n) == 0.0)
     return; /* on the axis */
-  if (c->fields.solid) {
+  if (g->c->fields.solid) {
     Kinematics k;
 
     if (!KinematicsEvaluate(&in[IN_GRADU], &k))
       return; /* the particle itself reports it */
     Carry(&k, f->n, x.a, x.da);
     Carry(&k, f->s, x.s, x.ds);
-    FaceDrag(&x, velocity, o);
+    FaceDrag(&x, g->velocity, o);
   }
   Area(&x);
   Act(&x, o);

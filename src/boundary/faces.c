@@ -38,45 +38,49 @@ static unsigned FindMeters(const Scene *c, const Face *f)
 
 #define POINT 1e-5 /* of a cell: shorter than that along an axis a face counts as a point there */
 
-/* Along one axis what is inside the particle's domain of a face that spans 2 t about s: its middle and half-length, m,
-   and how many cells it spans. */
-static double Inside(BasisType type, const GridLines *line, const Particles *P, const Face *f, int d, double s,
-                     double t, double *x, double *l)
+/* Along one axis, m. */
+typedef struct {
+  double middle, half;
+} Span;
+
+/* Along one axis what is inside the particle's domain of a face that spans `all`, and how many cells that is. */
+static double Inside(BasisType type, const GridLines *line, const Particles *P, const Face *f, int d, Span all,
+                     Span *inside)
 {
   const double p = ParticleGridX(P, f->particle, d), half = P->f[P_L + d][f->particle];
 
   if (line->x) {
     const BasisSpan dom = BasisSpanOf(type, line, p, half);
-    const double    lo  = fmin(fmax(LinesPlace(line, s - t), dom.lo), dom.hi),
-                 hi     = fmin(fmax(LinesPlace(line, s + t), dom.lo), dom.hi);
+    const double    lo  = fmin(fmax(LinesPlace(line, all.middle - all.half), dom.lo), dom.hi),
+                 hi     = fmin(fmax(LinesPlace(line, all.middle + all.half), dom.lo), dom.hi);
 
-    *x = 0.5 * (LinesFrom(line, lo) + LinesFrom(line, hi));
-    *l = 0.5 * (LinesFrom(line, hi) - LinesFrom(line, lo));
+    inside->middle = 0.5 * (LinesFrom(line, lo) + LinesFrom(line, hi));
+    inside->half   = 0.5 * (LinesFrom(line, hi) - LinesFrom(line, lo));
     return hi - lo;
   }
-  const double      h = line->h, lower = line->lower, at = (s - lower) / h, r = t / h;
+  const double      h = line->h, lower = line->lower, at = (all.middle - lower) / h, r = all.half / h;
   const BasisDomain dom = BasisDomainOf(type, p, half, lower, h, (double)line->cells);
   const double      lo = fmin(fmax(at - r, dom.lo), dom.hi), hi = fmin(fmax(at + r, dom.lo), dom.hi);
 
-  *x = lower + 0.5 * (lo + hi) * h;
-  *l = 0.5 * (hi - lo) * h;
+  inside->middle = lower + 0.5 * (lo + hi) * h;
+  inside->half   = 0.5 * (hi - lo) * h;
   return hi - lo;
 }
 
 /* Weights along one axis: of the interval inside the particle's domain, whose nodes are the only ones it may use; a hat
    function where that is a point. */
-static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const Face *f, int d, double s, double t,
-                        Axis *a)
+static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const Face *f, int d, Span all, Axis *a)
 {
   const GridLines *line = &g->line[d];
-  double           hoop[3], r, x, l;
+  double           hoop[3], r;
+  Span             in;
 
-  if (Inside(c->basis, line, P, f, d, s, t, &x, &l) < POINT)
-    BasisHat(x, line, a);
+  if (Inside(c->basis, line, P, f, d, all, &in) < POINT)
+    BasisHat(in.middle, line, a);
   else if (d == 0 && c->axisymmetric)
-    BasisRadius(BASIS_UGIMP, x, l, line, a, hoop, &r);
+    BasisRadius(BASIS_UGIMP, in.middle, in.half, line, a, hoop, &r);
   else
-    BasisAxis(BASIS_UGIMP, x, l, line, a);
+    BasisAxis(BASIS_UGIMP, in.middle, in.half, line, a);
 }
 
 /* Products of the axes' weights, in the order of StencilExpand. */
@@ -104,7 +108,7 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
     Axis a = st->axis[d];
 
     if (c->basis != BASIS_LINEAR)
-      AxisWeights(c, g, P, f, d, at[d], half[d], &a);
+      AxisWeights(c, g, P, f, d, (Span){at[d], half[d]}, &a);
     for (int k = 0; k < 3; k++) {
       const PetscInt i = st->axis[d].base + k - a.base;
 

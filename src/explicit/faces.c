@@ -73,7 +73,7 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   if (f->bc[BC_FACE_TEMPERATURE] >= 0 || f->bc[BC_WELL] >= 0 ||
       mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
     ModelParticleProperties(e->m, f->particle, &q, &why);
-  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
+  FaceEvaluate(&(FaceInput){e->m->c, f, &e->m->bc, mat, p0, in, velocity, q.Sh, q.kappa, dt}, o);
 }
 
 PetscErrorCode FacesConductance(const Explicit *e, double *conductance)

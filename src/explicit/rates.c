@@ -242,10 +242,11 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const W
   Held(e, s, r, g, dt, T_r, pw, pg, Kd, pe, dpe, area, v, held);
   INDEPENDENT
   for (int q = 0; q < r.n; q++) {
-    const Driving d      = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);
-    const Growth  growth = ReactionGrowth(&k, dt, held[q], &d, Kd[q], dK[q], pe[q], dpe[q]);
-    double        slope;
-    const double  per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
+    const Driving d = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);
+    const Growth  growth =
+        ReactionGrowth(&k, dt, held[q], &d, (OfTemperature){Kd[q], dK[q]}, (OfTemperature){pe[q], dpe[q]});
+    double       slope;
+    const double per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
                  gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), by = d.forms ? to : -per_mass * slope;
 
     gain[q]   = d.forms ? to * growth.v : gone;

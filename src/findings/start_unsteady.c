@@ -119,14 +119,13 @@ PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
    relative permeability of its own, or the state is no start. */
 static double GasMoves(const Scene *c, const Particles *P, PetscInt p, double *rho)
 {
-  const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
-  const double    pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw;
-  const char     *why;
-  PointProperties q;
+  const Material     *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
+  const double        pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw;
+  const PointContents x = {P->f[P_V][p], P->f[P_MS][p], P->f[P_MH][p], pw, pg, ParticleT(c, P, p)};
+  const char         *why;
+  PointProperties     q;
 
-  if (PointPropertiesEvaluate(&c->fields, m, P->f[P_V][p], P->f[P_MS][p], P->f[P_MH][p], pw, pg, ParticleT(c, P, p), &q,
-                              &why) != CL_OK ||
-      !(q.kr[PHASE_G] > CL_MOBILITY_FLOOR))
+  if (PointPropertiesEvaluate(&c->fields, m, &x, &q, &why) != CL_OK || !(q.kr[PHASE_G] > CL_MOBILITY_FLOOR))
     return 0.0;
   *rho = q.rho[PHASE_G];
   return q.kr[PHASE_G] / (q.resist[PHASE_G] * q.phi * (1.0 - q.Sh) * q.s[PHASE_G]);

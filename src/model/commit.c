@@ -164,14 +164,15 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void HeatRates(const Model *m, PetscInt p, const Reach *r, const double *x, double T, const PointState *s,
-                      const double out[OUT_COUNT], StageRates *rates)
+static void HeatRates(const Model *m, const double *x, const ParticleResult *at, StageRates *rates)
 {
-  const FieldSet *fs = &m->c->fields;
+  const FieldSet *fs  = &m->c->fields;
+  const Reach    *r   = &at->r;
+  const double   *out = at->o.out;
 
   rates->heat_source -= out[OUT_Q];
-  rates->squeezed += s->squeezed;
-  rates->beyond += LatentHeatBeyond(&ParticleMaterial(m, p)->latent, T) * s->gain / m->stage.dt;
+  rates->squeezed += at->state.squeezed;
+  rates->beyond += LatentHeatBeyond(&ParticleMaterial(m, at->p)->latent, at->in[IN_T]) * at->state.gain / m->stage.dt;
   for (int a = 0; a < r->n; a++) {
     const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
 
@@ -193,32 +194,30 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   m->failure.status = CL_OK;
   ModelGive(m, x, false);
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach       r;
-    PointState  s;
-    PointOutput o;
-    double      in[IN_COUNT];
+    ParticleResult    at;
+    const PointState *s = &at.state;
 
-    if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
+    if (ParticleEvaluate(m, p, x, false, &at) != CL_OK)
       continue;
-    Displacement(m, p, &r, x, &trial->u[CL_DIM * p]);
+    Displacement(m, p, &at.r, x, &trial->u[CL_DIM * p]);
     Velocity(m, p, x, &trial->v[CL_DIM * p]);
     CheckMotion(m, p, &trial->u[CL_DIM * p]);
     for (int k = 0; k < 3; k++)
-      trial->m[TRIAL_MASSES * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
+      trial->m[TRIAL_MASSES * p + k] = k == 0 ? s->m_h : k == 1 ? s->m_w : s->m_g;
     for (int k = 0; k < 3; k++)
-      trial->y[TRIAL_SCALARS * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
+      trial->y[TRIAL_SCALARS * p + k] = m->P.f[P_PW + k] ? at.in[IN_P + k] : 0.0;
     if (m->P.f[P_PG])
-      trial->y[TRIAL_SCALARS * p + 1] = GasToBe(in[IN_P], in[IN_P + 1]);
-    trial->y[TRIAL_SCALARS * p + 3] = s.Sh;
+      trial->y[TRIAL_SCALARS * p + 1] = GasToBe(at.in[IN_P], at.in[IN_P + 1]);
+    trial->y[TRIAL_SCALARS * p + 3] = s->Sh;
     if (trial->end)
-      trial->end[p] = s.end;
+      trial->end[p] = s->end;
     if (trial->s)
-      PlasticState(p, &s.skeleton, trial);
-    CountMoved(m, p, o.out, rates);
+      PlasticState(p, &s->skeleton, trial);
+    CountMoved(m, p, at.o.out, rates);
     if (m->c->fields.heat)
-      HeatRates(m, p, &r, x, in[IN_T], &s, o.out, rates);
+      HeatRates(m, x, &at, rates);
     if (m->c->fields.solid)
-      ParticlePower(m, p, &r, x, in, &s, o.out, rates->work);
+      ParticlePower(m, x, &at, rates->work);
   }
   CountLeft(m, rates);
   PetscCall(KeepBalance(m, trial->m));
@@ -441,17 +440,15 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   ModelGive(m, x, false);
   m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach       r;
-    PointState  s;
-    PointOutput o;
-    double      in[IN_COUNT];
+    ParticleResult at;
+    PointState    *s = &at.state;
 
-    PetscCheck(ParticleEvaluate(m, p, x, false, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+    PetscCheck(ParticleEvaluate(m, p, x, false, &at) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "an accepted state is not admissible");
     for (int k = 0; m->P.f[P_RATE] && k < 4; k++)
       m->P.f[P_RATE + k][p] = rates[TRIAL_SCALARS * p + k];
-    s.m_w = trial->m[TRIAL_MASSES * p + 1];
-    s.m_g = trial->m[TRIAL_MASSES * p + 2];
+    s->m_w = trial->m[TRIAL_MASSES * p + 1];
+    s->m_g = trial->m[TRIAL_MASSES * p + 2];
     if (trial->s) {
       m->P.f[P_WP][p] += trial->end[p].work;
       m->P.f[P_HEAT][p] = 0.0; /* the stages gave it */
@@ -459,8 +456,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
         m->P.f[P_KP + k][p] = trial->k[TRIAL_PLASTIC * p + k];
     }
     if (m->c->fields.solid)
-      m->released += Released(m, p, &s);
-    WriteHistory(m, p, x, &r, in, &s);
+      m->released += Released(m, p, s);
+    WriteHistory(m, p, x, &at.r, at.in, s);
   }
   if (unseen > 0.0)
     PetscCall(TransferUnseen(&at_start, &m->c->fields, unseen, &m->P));

@@ -40,22 +40,24 @@ static void Undriven(const Model *m, PetscInt p, double v[CL_DIM])
 
 /* (171): d J/d(inputs) of a particle's Darcy flux, with beds of A^-1 J, as if all particles of its nodes had its
    gradients. */
-static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                         const PointOutput *o, int f, double dJ[CL_DIM][IN_COUNT])
+static void FluxResponse(const Model *m, const double *x, const ParticleResult *at, int f, double dJ[CL_DIM][IN_COUNT])
 {
-  const FieldSet *fs = &m->c->fields;
-  const double   *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f], *dR = o->D[OUT_ROOT + f];
-  double          acc[CL_DIM] = {0.0}, G[CL_DIM], kr = 0.0;
-  Mobility        mobile;
+  const FieldSet    *fs = &m->c->fields;
+  const PetscInt     p  = at->p;
+  const Reach       *r  = &at->r;
+  const PointOutput *o  = &at->o;
+  const double      *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f], *dR = o->D[OUT_ROOT + f];
+  double             acc[CL_DIM] = {0.0}, G[CL_DIM], kr = 0.0;
+  Mobility           mobile;
 
   MobilityOf(m, p, r, f, &mobile);
   for (int a = 0; a < r->n; a++) {
-    double at[CL_DIM];
+    double own[CL_DIM];
 
-    Acceleration(m, r->node[a], x, PlaceV(fs, f), 1.0, at);
+    Acceleration(m, r->node[a], x, PlaceV(fs, f), 1.0, own);
     kr += r->S[a] * (m->fluid ? PetscSqr(m->fluid[PHASE_COUNT * r->node[a] + f].root) : 1.0);
     for (int i = 0; i < CL_DIM; i++)
-      acc[i] += r->S[a] * at[i];
+      acc[i] += r->S[a] * own[i];
   }
   memcpy(G, &o->out[VectorAt(OUT_G, f, 0)], sizeof(G));
   Undriven(m, p, G);
@@ -69,7 +71,7 @@ static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const doubl
       const double rise = 2.0 * sqrt(kr) * (G[i] + acc[i] * o->out[OUT_MI + f]);
 
       dJ[i][q] = -mobile.with_kr[i] * (dG[i] + acc[i] * dM[q]) -
-                 mobile.plain[i] * (rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
+                 mobile.plain[i] * (rise * dR[q] + at->in[VectorAt(IN_J, f, i)] * dD[q]);
     }
   }
   for (int i = 0; fs->solid && fs->inertia && i < CL_DIM; i++)
@@ -139,17 +141,17 @@ static void FixedStress(const FieldSet *fs, PointOutput *o)
   }
 }
 
-void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                       bool fixed_stress, PointOutput *o)
+void EliminateParticle(const Model *m, const double *x, bool fixed_stress, ParticleResult *at)
 {
   const FieldSet *fs = &m->c->fields;
+  PointOutput    *o  = &at->o;
 
   for (int f = 0; f < PHASE_COUNT; f++) {
     double dJ[CL_DIM][IN_COUNT];
 
     if (!fs->phase[f])
       continue;
-    FluxResponse(m, p, r, x, in, o, f, dJ);
+    FluxResponse(m, x, at, f, dJ);
     DropBracket(fs, o, f, BracketShare(o, f, dJ));
     for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
       Follow(o->D[row], f, dJ);
@@ -160,7 +162,7 @@ void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double 
 
       for (int i = 0; i < CL_DIM; i++)
         flow[i] = dJ[i][q];
-      Drive(m, p, flow);
+      Drive(m, at->p, flow);
       for (int i = 0; i < CL_DIM; i++)
         o->D[OUT_A + i][q] += o->out[OUT_MI + f] / m->stage.dt * flow[i];
     }

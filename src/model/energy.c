@@ -88,20 +88,22 @@ static void Fluxes(const Model *m, PetscInt I, int f, const double *x, double J[
   ShareOut(m, I, BJ);
 }
 
-void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                   const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES])
+void ParticlePower(const Model *m, const double *x, const ParticleResult *of, double power[WORK_RATES])
 {
   const FieldSet *fs = &m->c->fields;
+  const PetscInt  p  = of->p;
+  const Reach    *r  = &of->r;
+  const double   *in = of->in, *out = of->o.out;
   Motion          k;
 
-  MotionAt(m, p, r, x, s, &k);
+  MotionAt(m, p, r, x, &of->state, &k);
   if (fs->inertia)
     power[WORK_INERTIA] += InertiaPower(m, r, x, out);
   for (int i = 0; i < CL_DIM; i++)
     power[WORK_GRAVITY] +=
         m->bc.gravity[i] * (out[OUT_M] * k.v[0][i] + (fs->phase[PHASE_W] ? out[OUT_M + 1] * k.v[1][i] : 0.0) +
                             (fs->phase[PHASE_G] ? out[OUT_M + 2] * k.v[2][i] : 0.0));
-  power[WORK_PRESSURE] += fs->fluid ? s->p * k.expansion : 0.0;
+  power[WORK_PRESSURE] += fs->fluid ? of->state.p * k.expansion : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;

@@ -224,13 +224,15 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
     GatherProjected(m, p, r, s, f, h->proj[f]);
 }
 
-ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
-                          PointState *s, PointOutput *o)
+ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, ParticleResult *at)
 {
+  Reach       *r  = &at->r;
+  double      *in = at->in;
   PointHistory h;
   Sums         sums;
   const char  *why = NULL;
 
+  at->p = p;
   ReachMotion(m, p, r);
   Sum(m, r, &sums);
   const double less = m->relative_gas ? Withheld(m, p, &sums) : 0.0;
@@ -239,13 +241,14 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
     WithholdInputs(less, in);
   AddOwn(m, p, in);
   GatherHistory(m, p, r, &sums, less, &h);
-  const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
+  const ClStatus status =
+      PointEvaluate(&(PointInput){&m->c->fields, ParticleMaterial(m, p), &h, in}, tangent, &at->state, &at->o, &why);
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
   else if (m->P.f[P_HEAT] && m->c->fields.heat)
-    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* what hybrid left of (69) */
+    at->o.out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* what hybrid left of (69) */
   if (tangent && less != 0.0)
-    WithholdSlopes(less, o);
+    WithholdSlopes(less, &at->o);
   return status;
 }
 
@@ -273,12 +276,15 @@ void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, dou
 
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
 {
-  const FieldSet *fs = &m->c->fields;
-  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
-  const double    pg = fs->phase[PHASE_G] ? m->P.f[P_PG][p] : 0.0;
+  const FieldSet     *fs = &m->c->fields;
+  const PointContents x  = {.V   = m->P.f[P_V][p],
+                            .m_s = m->P.f[P_MS][p],
+                            .m_h = m->P.f[P_MH][p],
+                            .pw  = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0,
+                            .pg  = fs->phase[PHASE_G] ? m->P.f[P_PG][p] : 0.0,
+                            .T   = ParticleT(m->c, &m->P, p)};
 
-  return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
-                                 ParticleT(m->c, &m->P, p), q, why);
+  return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), &x, q, why);
 }
 
 /* Initial pressures with the weight of the water between particle and face (276). */
@@ -337,7 +343,8 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
     for (int d = 0; m->c->fields.solid && d < CL_DIM; d++)
       velocity[d] += face->N[a] * x[r->node[a] * m->c->fields.n + PlaceVs(&m->c->fields) + d];
   }
-  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, m->P.f[P_SH][p], in, velocity, kappa / sum, m->stage.dt,
+  FaceEvaluate(&(FaceInput){m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, velocity, m->P.f[P_SH][p], kappa / sum,
+                            m->stage.dt},
                o);
   if (m->beds)
     FaceBeds(&m->beds[p].A, &m->c->fields, o);

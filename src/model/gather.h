@@ -167,13 +167,21 @@ typedef struct {
 void PatchAt(const Model *m, const Assembly *to, const Reach *r, Patch *s);
 void PatchAdd(const Model *m, const Assembly *to, const Patch *s);
 
+/* A particle at nodal values: the nodes it reaches, what they give it, and what it makes of that. */
+typedef struct {
+  PetscInt    p;
+  Reach       r;
+  double      in[IN_COUNT];
+  PointState  state;
+  PointOutput o;
+} ParticleResult;
+
 /* What nodes hold for their particles at the nodal values x; before ParticleEvaluate and FaceAt.  slope: what a change
    x of them makes; before ParticleChange and FaceChange. */
 void ModelGive(Model *m, const double *x, bool slope);
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
-ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
-                          PointState *s, PointOutput *o);
+ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, ParticleResult *at);
 /* The same for a surface face. */
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
 /* Changes of the inputs of a particle and of its projected gradients, and of the inputs of a face, that a change x of
@@ -212,8 +220,7 @@ void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to);
 /* What eliminated fluid velocities leave of the tangent (171)-(174) of a particle, of a face. */
-void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                       bool fixed_stress, PointOutput *o);
+void EliminateParticle(const Model *m, const double *x, bool fixed_stress, ParticleResult *at);
 void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
 /* Plates (plates.c): their number and state; (73) position of those with a prescribed force at the nodal values x, all
    ranks; which faces touch, for the tangent; its dense part, f -= ... x; what the meters report. */
@@ -225,8 +232,7 @@ PetscErrorCode PlatesMult(const Model *m, const double *x, double *f);
 PetscErrorCode PlatesReport(Model *m, const double *x);
 /* Powers (91) of a particle, of a face with what it adds to its nodes, of prescribed motion (this rank's nodes), W; a
    scene with a solid. */
-void   ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                     const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES]);
+void   ParticlePower(const Model *m, const double *x, const ParticleResult *at, double power[WORK_RATES]);
 void   FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
                  double power[WORK_RATES]);
 double HeldPower(const Model *m);

@@ -222,14 +222,17 @@ static inline NodeWeights WeightsAt(const Model *m, const Reach *r, int b, doubl
 }
 
 /* What a particle adds to the blocks between its nodes. */
-static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
-                          const PointOutput *o, Slopes *slopes, Patch *patch)
+static void ParticleBlock(const Model *m, const Assembly *to, const double *x, const ParticleResult *of, Slopes *slopes,
+                          Patch *patch)
 {
-  const FieldSet *fs = &to->fs;
-  NodeFactors     factor[CL_NODES];
-  const double   *D[OUT_COUNT];
-  double         *row[OUT_COUNT];
-  double          DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
+  const FieldSet    *fs = &to->fs;
+  const Reach       *r  = &of->r;
+  const PointOutput *o  = &of->o;
+  const PetscInt     p  = of->p;
+  NodeFactors        factor[CL_NODES];
+  const double      *D[OUT_COUNT];
+  double            *row[OUT_COUNT];
+  double             DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
 
   SlopesBegin(fs->n * r->n, m->cell != NULL, slopes);
   for (int b = 0; b < r->n; b++) {
@@ -277,23 +280,20 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
     patch[k].n = slopes[k].unknowns = 0;
   for (PetscInt q = 0; q < m->P.n; q++) {
     const PetscInt p = m->order[q];
-    Reach          r;
-    PointState     state;
-    PointOutput    o;
-    double         in[IN_COUNT];
+    ParticleResult at;
 
-    if (ParticleEvaluate(m, p, x, true, &r, in, &state, &o) != CL_OK)
+    if (ParticleEvaluate(m, p, x, true, &at) != CL_OK)
       continue; /* the residual said so */
     if (m->wide)
-      KeepWide(&m->c->fields, &o, &m->wide[p]);
+      KeepWide(&m->c->fields, &at.o, &m->wide[p]);
     if (m->solver->product)
-      ProductKeep(m, q, &o);
+      ProductKeep(m, q, &at.o);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
-        EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
-      PatchAt(m, &target[k], &r, &patch[k]);
-      ParticleBlock(m, &target[k], p, &r, x, &o, &slopes[k], &patch[k]);
-      LongCellBlock(m, &target[k], p, &r);
+        EliminateParticle(m, x, target[k].fixed_stress, &at);
+      PatchAt(m, &target[k], &at.r, &patch[k]);
+      ParticleBlock(m, &target[k], x, &at, &slopes[k], &patch[k]);
+      LongCellBlock(m, &target[k], p, &at.r);
     }
   }
   for (int k = 0; k < ntarget; k++)

@@ -72,16 +72,13 @@ static void NodeLoop(const Model *m, const double *x, double *f)
 static void ParticleLoop(Model *m, const double *x, double *f)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach       r;
-    PointState  state;
-    PointOutput o;
-    double      in[IN_COUNT];
+    ParticleResult at;
 
-    if (ParticleEvaluate(m, p, x, false, &r, in, &state, &o) != CL_OK)
+    if (ParticleEvaluate(m, p, x, false, &at) != CL_OK)
       return;
-    m->limited += state.limited;
-    ParticleScatter(m, p, &r, x, o.out);
-    LongCellResidual(m, p, &r, x, f);
+    m->limited += at.state.limited;
+    ParticleScatter(m, p, &at.r, x, at.o.out);
+    LongCellResidual(m, p, &at.r, x, f);
   }
   NodeLoop(m, x, f);
 }

@@ -150,13 +150,13 @@ static bool Searches(const Model *m)
 }
 
 /* Norm of the scaled residual that a share of Y leaves, fluid velocities with the pressures. */
-static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec at, Vec R, double *norm)
+static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, const Vec work[2], double *norm)
 {
   PetscFunctionBeginUser;
-  PetscCall(VecWAXPY(at, -share, Y, X));
-  PetscCall(ModelVelocitiesOfPressures(m, at));
-  PetscCall(SNESComputeFunction(snes, at, R));
-  PetscCall(VecNorm(R, NORM_2, norm));
+  PetscCall(VecWAXPY(work[0], -share, Y, X));
+  PetscCall(ModelVelocitiesOfPressures(m, work[0]));
+  PetscCall(SNESComputeFunction(snes, work[0], work[1]));
+  PetscCall(VecNorm(work[1], NORM_2, norm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,18 +165,18 @@ static PetscErrorCode Choose(SNES snes, Model *m, Vec X, const Vec update[2], in
 {
   const int halvings = Searches(m) ? HALVINGS : 0;
   double    from, norm, least = INFINITY, trial = 1.0;
-  Vec       at, R;
+  Vec       work[2];
 
   PetscFunctionBeginUser;
   *chosen = 0;
   *share  = 1.0;
-  PetscCall(VecDuplicate(X, &at));
-  PetscCall(VecDuplicate(X, &R));
+  PetscCall(VecDuplicate(X, &work[0]));
+  PetscCall(VecDuplicate(X, &work[1]));
   PetscCall(SNESGetFunctionNorm(snes, &from));
   for (int k = 0; k <= halvings && !(least <= (1.0 - DESCENT * trial) * from); k++) {
     trial = ldexp(1.0, -k);
     for (int of = 0; of < 2 && update[of]; of++) {
-      PetscCall(Leaves(snes, m, X, trial, update[of], at, R, &norm));
+      PetscCall(Leaves(snes, m, X, trial, update[of], work, &norm));
       if (norm < least) { /* not so where it is no number */
         least   = norm;
         *chosen = of;
@@ -186,8 +186,8 @@ static PetscErrorCode Choose(SNES snes, Model *m, Vec X, const Vec update[2], in
   }
   PetscCall(
       PetscInfo(snes, "update%s: share %g leaves %.3e of %.3e\n", *chosen ? " of methane" : "", *share, least, from));
-  PetscCall(VecDestroy(&at));
-  PetscCall(VecDestroy(&R));
+  PetscCall(VecDestroy(&work[0]));
+  PetscCall(VecDestroy(&work[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

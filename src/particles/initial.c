@@ -97,7 +97,7 @@ static void Masses(const Scene *c, const Region *r, const InitialScalars *s, dou
 {
   const Material *mat = &c->material[r->material];
 
-  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, s->sg, s->pw, s->pg, s->T, &m[0], &m[1], &m[2], &m[3]);
+  PointInitialMasses(&c->fields, mat, &(PointStart){V, mat->porosity, r->Sh, s->sg, s->pw, s->pg, s->T}, m);
 }
 
 PetscErrorCode InitialScalarsAt(const Scene *c, const Region *r, const double x[], InitialScalars *s)

@@ -4,12 +4,12 @@
 #include "tangent.h"
 
 /* (200): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
-INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
-                   const double in[IN_COUNT], bool tangent, PointOutput *o)
+INLINE void Spread(const PointInput *x, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
+                   bool tangent, PointOutput *o)
 {
-  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->spread[f];
-  const Jet    rho = s->rho[f];
-  double       c[CL_DIM];
+  const double *in = x->in, VD = (f == PHASE_W ? x->h->V : -x->h->V) * x->h->spread[f];
+  const Jet     rho = s->rho[f];
+  double        c[CL_DIM];
 
   if (VD == 0.0)
     return;
@@ -32,14 +32,16 @@ INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
   }
 }
 
-/* Phi = V_n rho [ cof^T A J + tau K A (Pi g - g) ] (19), (448), g less what gravity has of it. */
-INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
-                 const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
+/* Phi = V_n rho [ cof^T A J + tau K A (Pi g - g) ] (19), (448), g less what gravity has of it; returns tau. */
+INLINE double Flux(const PointInput *x, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
+                   bool tangent, PointOutput *o)
 {
+  const PointHistory *h    = x->h;
+  const double       *in   = x->in;
   const double(*K)[CL_DIM] = metric->K;
   const Jet rho            = s->rho[f];
   const Jet kr             = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
-  const Tau t              = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
+  const Tau t              = TauOf(kr.v, s->resist[f].v, rho.v, x->fs->inertia ? 1.0 / h->dt : 0.0);
   const Jet tau            = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
   const Jet rt             = JetMul(rho, tau);
   double    J[CL_DIM], b[CL_DIM];
@@ -51,7 +53,6 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   Drive(h, J);
   Drive(h, b);
 
-  *tau_out = tau.v;
   for (int i = 0; i < CL_DIM; i++) {
     const int    row = VectorAt(OUT_FLUX, f, i);
     const double cJ = AlongCofactor(k, i, J), Kb = VectorDot(K[i], b);
@@ -78,6 +79,7 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
       D[VectorAt(IN_GP, f, j)] -= wide[j];
     }
   }
+  return tau.v;
 }
 
 /* (352): adds H p_g/rho_w Phi_w, the methane that the water carries. */

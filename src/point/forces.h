@@ -29,15 +29,17 @@ INLINE void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const 
 }
 
 /* Effective stress and its tangent; e_zz is the hoop strain, zero in plane strain. */
-INLINE ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
-                                double T, bool tangent, SkeletonState *state, SkeletonStage *end, Stress *out,
-                                const char **why)
+INLINE ClStatus EffectiveStress(const PointInput *x, const Kinematics *k, const ScalarState *s, bool tangent,
+                                PointState *to, Stress *out, const char **why)
 {
-  const Jet       thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(T - h->T_n, JET_T)));
-  double          dE;
-  SkeletonStep    d    = {.turn = k->turn, .thermal = thermal.v, .E = s->E.v, .Sh = s->Sh.v};
-  const Kept      k_h  = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h->m_star[0], s->m_h.v) : (Kept){1.0, 0.0};
-  const Jet       kept = JetChain(k_h.v, k_h.m, s->m_h);
+  const Material     *mat     = x->mat;
+  const PointHistory *h       = x->h;
+  SkeletonState      *state   = &to->skeleton;
+  const Jet           thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(x->in[IN_T] - h->T_n, JET_T)));
+  double              dE;
+  SkeletonStep        d = {.turn = k->turn, .thermal = thermal.v, .E = s->E.v, .Sh = s->Sh.v};
+  const Kept      k_h   = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h->m_star[0], s->m_h.v) : (Kept){1.0, 0.0};
+  const Jet       kept  = JetChain(k_h.v, k_h.m, s->m_h);
   SkeletonTangent t;
 
   memcpy(d.e, k->e, sizeof(d.e));
@@ -50,7 +52,7 @@ INLINE ClStatus EffectiveStress(const Material *mat, const PointHistory *h, cons
     if (tangent)
       SkeletonRow(t.d[c], k, s, &thermal, &kept, out->ds[c]);
   }
-  SkeletonEndStage(&h->skeleton, &d, state, s->V.v, end);
+  SkeletonEndStage(&h->skeleton, &d, state, s->V.v, &to->end);
   out->work = state->work;
   if (tangent)
     SkeletonRow(t.d[SKELETON_WORK], k, s, &thermal, &kept, out->dwork);

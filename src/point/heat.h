@@ -26,16 +26,19 @@ INLINE void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
 }
 
 /* Heat stored, released and advected, c Phi . g_T; needs the fluxes. */
-INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
-                 const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
+INLINE void Heat(const PointInput *x, const Kinematics *k, const ScalarState *s, bool tangent, PointOutput *o)
 {
+  const Material *mat = x->mat;
+  const double   *in  = x->in;
+
   PutScalar(OUT_C, s->capacity, k, tangent, o);
-  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
+  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / x->h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent,
+            o);
 #pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++) {
     const double c_f = SpecificHeat(mat, f);
 
-    if (!fs->phase[f])
+    if (!x->fs->phase[f])
       continue;
     o->out[OUT_Q] += AdvectedHeat(c_f, &o->out[VectorAt(OUT_FLUX, f, 0)], &in[IN_GT]);
     for (int i = 0; tangent && i < CL_DIM; i++) {
@@ -58,16 +61,18 @@ INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
 }
 
 /* (290) of one fluid: what its compression and throttling take of OUT_Q; needs its flux. */
-INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
-                            const double in[IN_COUNT], bool tangent, PointState *state, PointOutput *o)
+INLINE void CompressionHeat(const PointInput *x, const Kinematics *k, const ScalarState *s, int f, bool tangent,
+                            PointState *state, PointOutput *o)
 {
-  const Jet        p = JetVariable(in[IN_P + f], JET_PW + f), rho = s->rho[f];
-  const Jet        volume = JetDiv(s->m[f], rho);
-  const Jet        rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
-  const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
-  const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
-  const double    *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
-  double           fall[CL_DIM], *D = o->D[OUT_Q];
+  const PointHistory *h  = x->h;
+  const double       *in = x->in;
+  const Jet           p = JetVariable(in[IN_P + f], JET_PW + f), rho = s->rho[f];
+  const Jet           volume = JetDiv(s->m[f], rho);
+  const Jet           rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
+  const Throttling    t      = ThrottlingOf(s->warm[f].v, rho.v);
+  const Jet           share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
+  const double       *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
+  double              fall[CL_DIM], *D = o->D[OUT_Q];
 
   for (int i = 0; i < CL_DIM; i++) {
     fall[i] = k->F[0][i] * b[0];

@@ -54,14 +54,17 @@ static const Kinematics at_rest = {
     .turn     = ROTATION_NONE,
 };
 
-INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
-                         bool tangent, PointState *state, PointOutput *o, const char **why)
+INLINE ClStatus Evaluate(const PointInput *x, bool tangent, PointState *state, PointOutput *o, const char **why)
 {
-  Kinematics        moved;
-  const Kinematics *k = &at_rest;
-  ScalarState       s;
-  Metric            metric;
-  Stress            st;
+  const FieldSet     *fs  = x->fs;
+  const Material     *mat = x->mat;
+  const PointHistory *h   = x->h;
+  const double       *in  = x->in;
+  Kinematics          moved;
+  const Kinematics   *k = &at_rest;
+  ScalarState         s;
+  Metric              metric;
+  Stress              st;
 
   st.work = 0.0;
   if (fs->solid) {
@@ -71,7 +74,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     }
     k = &moved;
   }
-  const ClStatus status = ScalarStateEvaluate(fs, mat, h, k->J, in, &s, why);
+  const ClStatus status = ScalarStateEvaluate(x, k->J, &s, why);
   if (status != CL_OK)
     return status;
   if (tangent) {
@@ -86,8 +89,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
   if (fs->solid) {
-    const ClStatus strained =
-        EffectiveStress(mat, h, k, &s, in[IN_T], tangent, &state->skeleton, &state->end, &st, why);
+    const ClStatus strained = EffectiveStress(x, k, &s, tangent, state, &st, why);
     if (strained != CL_OK)
       return strained;
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
@@ -103,21 +105,21 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     if (!fs->phase[f])
       continue;
     FluidForces(h, k, f, in, tangent, o);
-    Flux(fs, h, k, &metric, &s, f, in, tangent, o, &state->tau[f]);
-    Spread(h, k, &metric, &s, f, in, tangent, o);
+    state->tau[f] = Flux(x, k, &metric, &s, f, tangent, o);
+    Spread(x, k, &metric, &s, f, tangent, o);
     FluidScalars(mat, h, k, &s, f, tangent, o);
   }
   if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && mat->gas.carried > 0.0)
     CarriedFlux(mat, k, &s, in, tangent, o);
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
-    Heat(fs, mat, h, k, &s, in, tangent, o);
+    Heat(x, k, &s, tangent, o);
     if (mat->reacts)
       state->gain = s.gain.v;
 #pragma GCC unroll 2
     for (int f = 0; f < PHASE_COUNT; f++) {
       if (h->compression && fs->phase[f])
-        CompressionHeat(h, k, &s, f, in, tangent, state, o);
+        CompressionHeat(x, k, &s, f, tangent, state, o);
     }
     if (fs->solid)
       PlasticHeat(mat, h, k, &s, &st, tangent, o);
@@ -126,8 +128,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
 }
 
 /* The residual pays for no slope: each form is compiled by itself. */
-ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
-                       bool tangent, PointState *state, PointOutput *o, const char **why)
+ClStatus PointEvaluate(const PointInput *x, bool tangent, PointState *state, PointOutput *o, const char **why)
 {
-  return tangent ? Evaluate(fs, mat, h, in, true, state, o, why) : Evaluate(fs, mat, h, in, false, state, o, why);
+  return tangent ? Evaluate(x, true, state, o, why) : Evaluate(x, false, state, o, why);
 }

@@ -5,10 +5,10 @@
 #include "scalars.h"
 
 /* Hydrate that goes, (12). */
-INLINE void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, ScalarState *s)
+INLINE void Dissociate(const Material *mat, double from, Jet growth, ScalarState *s)
 {
   double       slope;
-  const Jet    a    = JetScale(-mat->kinetics.A_geo, JetDiv(growth, rho_h));
+  const Jet    a    = JetScale(-mat->kinetics.A_geo, JetDiv(growth, s->rho_h));
   const double gain = ReactionDissociated(from, a.v, &slope);
 
   s->gain = JetChain(gain, slope, a);
@@ -31,11 +31,11 @@ INLINE Jet Wet(const Material *mat, double m0, Jet pore, Jet pc, Jet over, const
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
-INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc, Jet over, ScalarState *s)
+INLINE void Form(const Material *mat, double m0, Jet per_area, Jet pc, Jet over, ScalarState *s)
 {
   const Kinetics *k      = &mat->kinetics;
   const Jet       growth = JetMul(s->V, per_area);
-  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, pc, over, s);
+  const Jet       pore = JetMul(s->rho_h, s->Vp), wet = Wet(mat, m0, pore, pc, over, s);
   double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0;
 
   for (int it = 0; it < 100; it++) {
@@ -70,13 +70,13 @@ INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc
 /* m_h and its gain, from pressures, shares and pores of s.  The reaction sees p and T of the nodal fields, not the
    particle's own: those differ by what nodes cannot see (and so never correct), which a fast reaction would turn into
    hydrate. */
-INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h, ScalarState *s)
+INLINE void HydrateMass(const Material *mat, const PointHistory *h, ScalarState *s)
 {
   const Kinetics *k    = &mat->kinetics;
   const double    m0   = fmax(h->m_star[0], 0.0);
-  const Jet       T_r  = JetShift(T, h->shift[2]);
-  const Jet       held = JetScale(h->withheld, JetShift(pg, -h->pg_n)); /* thin gas (416) */
-  const Jet       pw_r = JetAdd(JetShift(pw, h->shift[0]), held), pg_r = JetAdd(JetShift(pg, h->shift[1]), held);
+  const Jet       T_r  = JetShift(s->T, h->shift[2]);
+  const Jet       held = JetScale(h->withheld, JetShift(s->pg, -h->pg_n)); /* thin gas (416) */
+  const Jet       pw_r = JetAdd(JetShift(s->pw, h->shift[0]), held), pg_r = JetAdd(JetShift(s->pg, h->shift[1]), held);
   double          dK, dpe;
 
   s->limited = mat->reacts && h->m_star[0] < 0.0;
@@ -88,14 +88,14 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   const double Kd      = KineticsRateConstant(k, T_r.v, &dK),
                pe      = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe) + h->chord; /* chord (424) */
   const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
-  const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, Kd, dK, pe, dpe);
+  const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, (OfTemperature){Kd, dK}, (OfTemperature){pe, dpe});
   const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);
   const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
   if (d.forms)
-    Form(mat, m0, growth, rho_h, JetSub(pg_r, pw_r), JetChain2(p_r.v - pe, 1.0, p_r, -dpe, T_r), s);
+    Form(mat, m0, growth, JetSub(pg_r, pw_r), JetChain2(p_r.v - pe, 1.0, p_r, -dpe, T_r), s);
   else
-    Dissociate(mat, m0, growth, rho_h, s);
+    Dissociate(mat, m0, growth, s);
   s->gain = JetShift(s->gain, m0 - h->m_star[0]);
   s->m_h  = JetShift(s->gain, h->m_star[0]);
 }

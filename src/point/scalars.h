@@ -5,6 +5,7 @@
 #include "clathra/point.h"
 
 typedef struct {
+  Jet  pw, pg, T, rho_h; /* Pa, degC, kg/m^3 */
   Jet  V, Vp, phi, Sh, sw, sg, p;
   Jet  m_h, m[PHASE_COUNT]; /* masses, kg */
   Jet  gain; /* m_h - m_h*, kg, as the reaction makes it: the difference would round what m_h* is the large part of */

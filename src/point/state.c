@@ -1,17 +1,18 @@
 /* What a particle's scalar state is asked for besides the balances: first masses, gas, properties at t_n. */
 #include "state.h"
 
-void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
-                        double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g)
+void PointInitialMasses(const FieldSet *fs, const Material *mat, const PointStart *x, double m[4])
 {
   double       d, e;
-  const bool   gas = fs->phase[PHASE_G];
-  const double Vf  = V * phi * (1.0 - Sh);
+  const double Vf = x->V * x->phi * (1.0 - x->Sh);
 
-  *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
-  *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, FluidDensity(mat, PHASE_W, pw, T, &d, &e)).v : 0.0;
-  *m_g = gas ? Vf * MethaneContent(mat->gas.trace, sg, FluidDensity(mat, PHASE_G, pg, T, &d, &e), pg).v : 0.0;
+  m[0] = x->V * (1.0 - x->phi) * LiquidDensity(&mat->solid, 0.0, x->T, &d, &e);
+  m[1] = x->V * x->phi * x->Sh * LiquidDensity(&mat->hydrate, 0.0, x->T, &d, &e);
+  m[2] = m[3] = 0.0;
+  if (fs->phase[PHASE_W])
+    m[2] = Vf * WaterContent(x->sg, FluidDensity(mat, PHASE_W, x->pw, x->T, &d, &e)).v;
+  if (fs->phase[PHASE_G])
+    m[3] = Vf * MethaneContent(mat->gas.trace, x->sg, FluidDensity(mat, PHASE_G, x->pg, x->T, &d, &e), x->pg).v;
 }
 
 double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT])
@@ -59,13 +60,13 @@ static void ReactionProperties(const Material *mat, const ScalarState *s, double
   r->reaction_heat = r->reaction * LatentHeatEvaluate(&mat->latent, T, &d);
 }
 
-ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, PointProperties *r, const char **why)
+ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, const PointContents *x, PointProperties *r,
+                                 const char **why)
 {
-  const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
-  const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
+  const PointHistory h = {.V = x->V, .m_s = x->m_s, .m_star = {x->m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
+  const double       in[IN_COUNT] = {[IN_P] = x->pw, [IN_P + 1] = x->pg, [IN_T] = x->T};
   ScalarState        s;
-  const ClStatus     status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
+  const ClStatus     status = ScalarStateEvaluate(&(PointInput){fs, mat, &h, in}, 1.0, &s, why);
 
   if (status != CL_OK)
     return status;
@@ -80,9 +81,9 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->kr[f]             = s.kr[f].v;
     const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
-    r->storage[f]        = m->d[JET_PW + f] / (V * s.rho[f].v);
-    r->cross[f]          = m->d[JET_PW + PHASE_G - f] / (V * s.rho[f].v);
-    r->compressibility += (m->d[JET_PW] + m->d[JET_PG]) / (V * s.rho[f].v);
+    r->storage[f]        = m->d[JET_PW + f] / (x->V * s.rho[f].v);
+    r->cross[f]          = m->d[JET_PW + PHASE_G - f] / (x->V * s.rho[f].v);
+    r->compressibility += (m->d[JET_PW] + m->d[JET_PG]) / (x->V * s.rho[f].v);
   }
   if (fs->heat) {
     r->capacity = s.capacity.v;
@@ -93,6 +94,6 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->G = s.E.v * ElasticityShearFactor(&mat->elasticity);
   }
   if (mat->reacts)
-    ReactionProperties(mat, &s, pg - pw, T, r);
+    ReactionProperties(mat, &s, x->pg - x->pw, x->T, r);
   return CL_OK;
 }

@@ -115,31 +115,39 @@ INLINE Jet GasShareJet(const Retention *law, Jet pc, Jet Sh)
   return JetChain2(sg, dpc, pc, dSh, Sh);
 }
 
+/* Shares of the open pores when hydrate narrows them as at this S_h (320). */
+INLINE void ShareBeside(const Material *mat, Jet Sh, ScalarState *s)
+{
+  Share(GasShareJet(&mat->retention, JetSub(s->pg, s->pw), Sh), s->pw, s->pg, s);
+}
+
 /* (321): what the reaction makes of S_h if the fluids share the pores as at this S_h, less S_h itself, with its slope;
    all else is fixed. */
-INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, double pw, double pg, double T,
-                             double rho_h, const ScalarState *s, double *slope)
+INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, const ScalarState *s, double *slope)
 {
-  ScalarState  trial = {.V = JetConstant(s->V.v), .Vp = JetConstant(s->Vp.v)};
-  double       dpc, dSh;
-  const double sg = RetentionGasShare(&mat->retention, pg - pw, Sh, &dpc, &dSh), full = rho_h * s->Vp.v;
+  ScalarState  trial = {.pw    = JetConstant(s->pw.v),
+                        .pg    = JetConstant(s->pg.v),
+                        .T     = JetConstant(s->T.v),
+                        .rho_h = JetConstant(s->rho_h.v),
+                        .V     = JetConstant(s->V.v),
+                        .Vp    = JetConstant(s->Vp.v)};
+  const double full  = s->rho_h.v * s->Vp.v;
 
-  Share(JetVariable(sg, JET_J), JetConstant(pw), JetConstant(pg), &trial); /* the place of J is free for s_g */
-  HydrateMass(mat, h, JetConstant(pw), JetConstant(pg), JetConstant(T), JetConstant(rho_h), &trial);
-  *slope = trial.m_h.d[JET_J] * dSh / full - 1.0;
+  ShareBeside(mat, JetVariable(Sh, JET_J), &trial); /* the place of J is free for S_h */
+  HydrateMass(mat, h, &trial);
+  *slope = trial.m_h.d[JET_J] / full - 1.0;
   return trial.m_h.v / full - Sh;
 }
 
 #define ROUNDING 4e-16 /* of S_h */
 
 /* (321) by Newton inside a bracket: S_h, with what is left of the balance and its slope there. */
-INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw, double pg, double T, double rho_h,
-                           const ScalarState *s, double *f, double *slope)
+INLINE double SolveHydrate(const Material *mat, const PointHistory *h, const ScalarState *s, double *f, double *slope)
 {
-  double lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (rho_h * s->Vp.v), lo), hi);
+  double lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (s->rho_h.v * s->Vp.v), lo), hi);
 
   for (int it = 0; it < 100; it++) {
-    *f                      = HydrateBalance(mat, h, Sh, pw, pg, T, rho_h, s, slope);
+    *f                      = HydrateBalance(mat, h, Sh, s, slope);
     *(*f > 0.0 ? &lo : &hi) = Sh;
     if (fabs(*f) <= ROUNDING || hi - lo <= ROUNDING)
       break;
@@ -152,38 +160,36 @@ INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw
 
 /* The slopes follow from the implicit function theorem; of the mass of hydrate what the reaction says where it is slow,
    what S_h says where it is fast, which is one Newton step more in either. */
-INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h,
-                             ScalarState *s)
+INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, ScalarState *s)
 {
-  const Jet    full = JetMul(rho_h, s->Vp), pc = JetSub(pg, pw);
+  const Jet    full = JetMul(s->rho_h, s->Vp);
   double       f, slope;
-  const double found = SolveHydrate(mat, h, pw.v, pg.v, T.v, rho_h.v, s, &f, &slope);
+  const double found = SolveHydrate(mat, h, s, &f, &slope);
 
-  Share(GasShareJet(&mat->retention, pc, JetConstant(found)), pw, pg, s);
-  HydrateMass(mat, h, pw, pg, T, rho_h, s);
+  ShareBeside(mat, JetConstant(found), s);
+  HydrateMass(mat, h, s);
   const Jet    Sh = JetChain(found - f / slope, -1.0 / slope, JetDiv(s->m_h, full)), m_h = JetMul(Sh, full);
   const double more = -(slope + 1.0) * f / slope * full.v;
 
-  Share(GasShareJet(&mat->retention, pc, Sh), pw, pg, s);
+  ShareBeside(mat, Sh, s);
   s->m_h  = (Jet){s->m_h.v + more, m_h.d};
   s->gain = (Jet){s->gain.v + more, m_h.d};
 }
 
 /* Shares of the fluids in the open pores, their mean pressure, and hydrate. */
-INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T,
-                        Jet rho_h, ScalarState *s)
+INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, ScalarState *s)
 {
   if (!fs->phase[PHASE_G]) {
     s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
     s->sg = JetConstant(0.0);
-    s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
+    s->p  = fs->phase[PHASE_W] ? s->pw : JetConstant(0.0);
   } else if (mat->retention.hydrate > 0.0) {
-    ShareWithHydrate(mat, h, pw, pg, T, rho_h, s);
+    ShareWithHydrate(mat, h, s);
     return;
   } else {
-    Share(GasShareJet(&mat->retention, JetSub(pg, pw), JetConstant(0.0)), pw, pg, s);
+    ShareBeside(mat, JetConstant(0.0), s);
   }
-  HydrateMass(mat, h, pw, pg, T, rho_h, s);
+  HydrateMass(mat, h, s);
 }
 
 INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
@@ -211,10 +217,13 @@ INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const doubl
 }
 
 /* Only what the fields of the set need is filled, the rest is zero. */
-INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
-                                    const double in[IN_COUNT], ScalarState *s, const char **why)
+INLINE ClStatus ScalarStateEvaluate(const PointInput *x, double J, ScalarState *s, const char **why)
 {
-  const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
+  const FieldSet     *fs  = x->fs;
+  const Material     *mat = x->mat;
+  const PointHistory *h   = x->h;
+  const double       *in  = x->in;
+  const Jet           pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
             T    = JetVariable(in[IN_T], JET_T);
   const Jet zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
@@ -222,15 +231,15 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
   const ClStatus status = CheckInputs(fs, mat, in, why);
   if (status != CL_OK)
     return status;
-  *s                = (ScalarState){.V = JetScale(h->V, JetVariable(J, JET_J))};
-  s->Vp             = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
-  s->phi            = JetDiv(s->Vp, s->V);
+  *s     = (ScalarState){.pw = pw, .pg = pg, .T = T, .rho_h = rho_h, .V = JetScale(h->V, JetVariable(J, JET_J))};
+  s->Vp  = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
+  s->phi = JetDiv(s->Vp, s->V);
   const bool filled = fs->fluid || h->m_star[0] > 0.0; /* nothing else needs pores */
   if (filled && !(s->phi.v > 0.0)) {
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
-  Saturations(fs, mat, h, pw, pg, T, rho_h, s);
+  Saturations(fs, mat, h, s);
 
   const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
   if (filled && !(Vf.v > 0.0)) {

@@ -15,9 +15,21 @@ static const Tableau sdirk2 = {.stages         = 2,
                                .embedded_fresh = {0.0, 1.0, 0.0},
                                .error_order    = 3};
 
-const StepperScheme StepperScheme_Euler = {.kind = INTEGRATOR_EULER, .tableau = &euler, .advance = StepperImplicitStep};
-const StepperScheme StepperScheme_Sdirk2 = {
-    .kind = INTEGRATOR_SDIRK2, .tableau = &sdirk2, .advance = StepperImplicitStep};
+const StepperScheme StepperScheme_Euler  = {.kind = INTEGRATOR_EULER, .tableau = &euler};
+const StepperScheme StepperScheme_Sdirk2 = {.kind = INTEGRATOR_SDIRK2, .tableau = &sdirk2};
+
+/* p_w, p_g, T, S_h of a particle at t_n, and their rates in the last step; zero where there is no such field. */
+static void History(const Model *m, PetscInt p, double y[TRIAL_SCALARS], double rate[TRIAL_SCALARS])
+{
+  static const int held[TRIAL_SCALARS] = {P_PW, P_PG, P_T, P_SH};
+
+  for (int k = 0; k < TRIAL_SCALARS; k++) {
+    y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
+    rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
+  }
+  if (m->P.f[P_PG])
+    y[1] = GasToBe(y[0], y[1]);
+}
 
 /* Rates k of the stages of a variable from its value at t_n and, in k, those at the ends of the stages. */
 static void RatesOfStages(const Tableau *b, double dt, double y_n, double k[DIRK_STAGES])
@@ -116,6 +128,50 @@ static void PlasticErrors(Stepper *s, double dt)
   }
 }
 
+double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
+{
+  const Model *m                       = s->model;
+  const double scale[STEPPER_ERRORS]   = {s->state.scale_p, s->state.scale_p,  s->state.scale_T, STEPPER_SCALE_SH,
+                                          s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
+  const double half                    = 0.5 * CaseOf(m->c)->error_exponent;
+  double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0, top = 0.0;
+
+  a->peak = (Peak){.err = 0.0};
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    double square[STEPPER_ERRORS] = {0.0};
+
+    for (int k = 0; k < TRIAL_SCALARS; k++)
+      square[k] = PetscSqr(e[TRIAL_SCALARS * p + k]);
+    square[TRIAL_SCALARS] = VectorDot(&eu[CL_DIM * p], &eu[CL_DIM * p]);
+    for (int k = 0; s->work.e_plastic && k < TRIAL_PLASTIC; k++)
+      square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[TRIAL_PLASTIC * p + k]);
+    for (int k = 0; k < STEPPER_ERRORS; k++) {
+      const double one = ClSize(square[k] / PetscSqr(s->tol * scale[k]));
+
+      sum[k] += pow(one, half);
+      if (one > top) {
+        top     = one;
+        a->peak = (Peak){.err = sqrt(one), .of = k};
+        ParticlePlace(&m->P, p, a->peak.at);
+      }
+    }
+  }
+  sum[STEPPER_ERRORS] = (double)m->P.n;
+  if (GridShareLargest(m->grid.comm, &a->peak, sizeof(a->peak)) ||
+      MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
+    return NAN;
+  a->rules = 0;
+  for (int k = 0; k < STEPPER_ERRORS; k++) {
+    const double err = ClSize(pow(sum[k] / sum[STEPPER_ERRORS], 0.5 / half));
+
+    if (err > worst) {
+      worst    = err;
+      a->rules = k;
+    }
+  }
+  return worst;
+}
+
 /* Rates of p_w, p_g, T, S_h at the end of the step; norm of the errors of all that has one. */
 static PetscErrorCode Errors(Stepper *s, double dt, Attempt *a)
 {
@@ -130,7 +186,7 @@ static PetscErrorCode Errors(Stepper *s, double dt, Attempt *a)
   for (PetscInt p = 0; p < m->P.n; p++) {
     double y_n[TRIAL_SCALARS], k_n[TRIAL_SCALARS], rate[DIRK_STAGES];
 
-    StepperHistory(m, p, y_n, k_n);
+    History(m, p, y_n, k_n);
     for (int k = 0; k < TRIAL_SCALARS; k++) {
       const PetscInt q = TRIAL_SCALARS * p + k;
 
@@ -148,6 +204,38 @@ static PetscErrorCode Errors(Stepper *s, double dt, Attempt *a)
   }
   a->err = StepperErrorNorm(s, e, eu, a);
   PetscCall(PetscFree2(e, eu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A stage that ends at t, of length dt, from the starred values in the work space; weight (s) is its share of the
+   step's integrals. */
+static PetscErrorCode StageSolve(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a)
+{
+  Model       *m     = s->model;
+  StepperWork *w     = &s->work;
+  const Stage  stage = {.t      = t,
+                        .dt     = dt,
+                        .ahead  = t - s->state.t,
+                        .drain  = w->drain,
+                        .x_star = w->x_star,
+                        .u_star = w->u_star,
+                        .m_star = w->m_star,
+                        .k_star = w->k_star};
+  StageRates   rates;
+  PetscInt     newton = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelBeginStage(m, &stage));
+  PetscCall(ModelPlatesCheck(m, &a->status));
+  if (a->status == CL_OK)
+    PetscCall(ModelSolve(m, w->x, &newton, &a->status));
+  a->newton += newton;
+  if (a->status == CL_OK)
+    PetscCall(ModelEndStage(m, w->x, trial, &rates, &a->status));
+  if (a->status != CL_OK)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  a->limited += m->limited;
+  StepperCount(m->c, &rates, weight, a);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,7 +259,7 @@ PetscErrorCode StepperDirkStep(Stepper *s, double dt, Attempt *a)
     for (int j = 0; j <= i; j++)
       end += b->a[i][j];
     StartOfStage(s, i, dt);
-    PetscCall(StepperStage(s, s->state.t + end * dt, b->a[i][i] * dt, &w->trial[i], last[i] * dt, a));
+    PetscCall(StageSolve(s, s->state.t + end * dt, b->a[i][i] * dt, &w->trial[i], last[i] * dt, a));
     if (a->status != CL_OK)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (i < b->stages - 1)

@@ -125,7 +125,7 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
       PetscCall(Change(s, ok));
     if (*ok) {
       PetscCall(ModelBalance(s->model));
-      PetscCall(s->scheme->advance(s, ok));
+      PetscCall(s->scheme->tableau ? StepperImplicitStep(s, ok) : s->scheme->advance(s, ok));
     }
     if (*ok && !StepperStageDone(s))
       PetscCall(StepperAutoDecide(s, ok));

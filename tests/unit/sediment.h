@@ -85,5 +85,11 @@ static inline double GasShareOf(const Material *mat, double pc, double Sh)
 static inline void InitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
                                  double *m_s, double *m_h, double *m_w, double *m_g)
 {
-  PointInitialMasses(AllFields(), mat, V, phi, Sh, GasShareOf(mat, pg - pw, Sh), pw, pg, T, m_s, m_h, m_w, m_g);
+  double m[4];
+
+  PointInitialMasses(AllFields(), mat, &(PointStart){V, phi, Sh, GasShareOf(mat, pg - pw, Sh), pw, pg, T}, m);
+  *m_s = m[0];
+  *m_h = m[1];
+  *m_w = m[2];
+  *m_g = m[3];
 }

@@ -164,7 +164,7 @@ static inline void Refill(SmallScene *s, PetscInt p, double Sh)
 
   if (f[P_PG])
     sg = GasShareOf(mat, pg - pw, Sh);
-  PointInitialMasses(fs, mat, f[P_V][p], mat->porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
+  PointInitialMasses(fs, mat, &(PointStart){f[P_V][p], mat->porosity, Sh, sg, pw, pg, T}, m);
   for (int k = 0; k < 4; k++) {
     if (f[P_MS + k])
       f[P_MS + k][p] = m[k];

@@ -365,7 +365,8 @@ static void TestAxialHeat(void **state)
     StageStart(s, 1e3);
     PointProperties q;
     const char     *why;
-    Call(PointPropertiesEvaluate(&s->c.scene.fields, &s->mat, 1.0, 0.7 * s->mat.solid.rho0, 0.0, 0.0, 0.0, 4.0, &q,
+    Call(PointPropertiesEvaluate(&s->c.scene.fields, &s->mat,
+                                 &(PointContents){.V = 1.0, .m_s = 0.7 * s->mat.solid.rho0, .T = 4.0}, &q,
                                  &why) != CL_OK);
     s->number[0] = -q.kappa * slope;
     s->number[2] = q.kappa * slope;

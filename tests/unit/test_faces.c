@@ -83,7 +83,7 @@ static void Evaluate(const SmallScene *s, const double in[IN_COUNT], FaceOutput 
 {
   const double velocity[CL_DIM] = {0.02 + in[IN_U] / DT, -0.01 + in[IN_U + 1] / DT};
 
-  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, s->Sh, in, velocity, KAPPA, DT, o);
+  FaceEvaluate(&(FaceInput){&s->c, &s->face, &s->v, &s->mat, s->p0, in, velocity, s->Sh, KAPPA, DT}, o);
   if (s->face.bc[BC_PLATE] >= 0)
     PlateEvaluate(&s->bc[s->face.bc[BC_PLATE]], &s->face, s->value[s->face.bc[BC_PLATE]], in, o);
 }

@@ -107,7 +107,7 @@ static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
 
   memcpy(in, q->in, sizeof in);
   in[q->column] = x;
-  if (PointEvaluate(q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+  if (PointEvaluate(&(PointInput){q->fs, &q->mat, &q->h, in}, false, &state, &o, &why) != CL_OK)
     return false;
   memcpy(y, o.out, sizeof o.out);
   return true;
@@ -129,8 +129,10 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   q->h.dt          = RngLog(r, 5.0, 500.0);
   const double Sh0 = q->h.Sh_n * RngBetween(r, 0.9, 1.1);
   const double sg  = fs->phase[PHASE_G] ? GasShareOf(&q->mat, pg - pw, Sh0) : 0.0;
-  PointInitialMasses(fs, &q->mat, q->h.V, 0.3, Sh0, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
-                     &q->h.m_star[2]);
+  double       m[4];
+  PointInitialMasses(fs, &q->mat, &(PointStart){q->h.V, 0.3, Sh0, sg, pw, pg, T}, m);
+  q->h.m_s = m[0];
+  memcpy(q->h.m_star, &m[1], sizeof(q->h.m_star));
   for (int k = 0; k < 6; k++) {
     q->h.skeleton.sig[k]  = RngBetween(r, -3e6, 3e6);
     q->h.skeleton.sig0[k] = RngBetween(r, -3e6, 3e6);
@@ -159,7 +161,7 @@ static double TangentError(Point *q, bool axisymmetric)
   const char *why;
   double      error[OUT_COUNT] = {0.0}, size[OUT_COUNT] = {0.0}, worst = 0.0;
 
-  if (PointEvaluate(q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) != CL_OK)
+  if (PointEvaluate(&(PointInput){q->fs, &q->mat, &q->h, q->in}, true, &state, &o, &why) != CL_OK)
     return 0.0;
   for (int c = 0; c < IN_COUNT; c++) {
     const double unit = c < IN_P    ? 0.1

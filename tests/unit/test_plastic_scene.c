@@ -34,7 +34,7 @@ static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
 
   memcpy(in, q->in, sizeof in);
   in[q->column] = x;
-  if (PointEvaluate(&q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+  if (PointEvaluate(&(PointInput){&q->fs, &q->mat, &q->h, in}, false, &state, &o, &why) != CL_OK)
     return false;
   memcpy(y, o.out, sizeof o.out);
   return true;
@@ -50,8 +50,10 @@ static void RandomPoint(Rng *r, Point *q)
   q->mat.reacts     = gas && RngPick(r, 2);
   q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0)};
   const double sg   = gas ? GasShareOf(&q->mat, pg - pw, 0.21) : 0.0;
-  PointInitialMasses(&q->fs, &q->mat, q->h.V, 0.3, 0.21, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
-                     &q->h.m_star[2]);
+  double       m[4];
+  PointInitialMasses(&q->fs, &q->mat, &(PointStart){q->h.V, 0.3, 0.21, sg, pw, pg, T}, m);
+  q->h.m_s = m[0];
+  memcpy(q->h.m_star, &m[1], sizeof(q->h.m_star));
   for (int k = 0; k < 4; k++) {
     q->h.skeleton.sig[k]          = RngBetween(r, -3e6, 1e6);
     q->h.skeleton.from.plastic[k] = RngBetween(r, -1e-3, 1e-3);
@@ -81,7 +83,7 @@ static int Branch(const Point *q, double x)
 
   memcpy(in, q->in, sizeof in);
   in[q->column] = x;
-  if (PointEvaluate(&q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+  if (PointEvaluate(&(PointInput){&q->fs, &q->mat, &q->h, in}, false, &state, &o, &why) != CL_OK)
     return -1;
   const double left = state.skeleton.own[OWN_P_OPENING],
                mean = Trace6(state.skeleton.sig) / 3.0; /* none while tears take up what dilates */
@@ -111,7 +113,7 @@ static double TangentError(Point *q, ReturnRegion *region)
   const char *why;
   double      worst = 0.0;
 
-  Check(PointEvaluate(&q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) == CL_OK);
+  Check(PointEvaluate(&(PointInput){&q->fs, &q->mat, &q->h, q->in}, true, &state, &o, &why) == CL_OK);
   *region = state.skeleton.region;
   for (int k = 0; k < 6 && *region != RETURN_ELASTIC; k++) {
     double error = 0.0, size = 0.0;
@@ -179,13 +181,10 @@ static double Yielding(SmallScene *s)
   RandomUnknowns(&s->m, s->stage.dt, 30, x);
   ModelGive(&s->m, x, false);
   for (PetscInt p = 0; p < s->m.P.n; p++) {
-    Reach       r;
-    PointState  state;
-    PointOutput o;
-    double      in[IN_COUNT];
+    ParticleResult at;
 
-    Check(ParticleEvaluate(&s->m, p, x, false, &r, in, &state, &o) == CL_OK);
-    n += state.skeleton.region != RETURN_ELASTIC;
+    Check(ParticleEvaluate(&s->m, p, x, false, &at) == CL_OK);
+    n += at.state.skeleton.region != RETURN_ELASTIC;
   }
   Call(PetscFree(x));
   return n;

@@ -163,7 +163,7 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 static ClStatus Evaluate(const Particle *q, bool tangent, PointState *s, PointOutput *o)
 {
   const char    *why    = NULL;
-  const ClStatus status = PointEvaluate(AllFields(), &q->mat, &q->h, q->in, tangent, s, o, &why);
+  const ClStatus status = PointEvaluate(&(PointInput){AllFields(), &q->mat, &q->h, q->in}, tangent, s, o, &why);
 
   assert_true((status == CL_OK) == (why == NULL));
   return status;
@@ -765,7 +765,7 @@ static bool SolveClosedCell(Particle *q, PointState *s)
       for (int k = 0; k < 2; k++)
         q->in[IN_P + k] = p[k] + cut * dx[k];
       const char *why;
-      if (PointEvaluate(AllFields(), &q->mat, &q->h, q->in, false, &st, &t, &why) == CL_OK &&
+      if (PointEvaluate(&(PointInput){AllFields(), &q->mat, &q->h, q->in}, false, &st, &t, &why) == CL_OK &&
           fabs(t.out[OUT_DM]) / q->h.m_star[1] + fabs(t.out[OUT_DM + 1]) / q->h.m_star[2] < size)
         break;
     }
@@ -826,7 +826,7 @@ static void TestFlowOfTrace(void **state)
     InitialMasses(&q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0], &q.h.m_star[1],
                   &q.h.m_star[2]);
     q.h.Sh_n = 0.1;
-    assert_int_equal(PointEvaluate(AllFields(), &q.mat, &q.h, q.in, true, &s, &o, &why), CL_OK);
+    assert_int_equal(PointEvaluate(&(PointInput){AllFields(), &q.mat, &q.h, q.in}, true, &s, &o, &why), CL_OK);
     const double flux = o.out[VectorAt(OUT_FLUX, PHASE_G, 0)];
     printf("  p_g = %g Pa: flux of methane %g kg m/s, of which the gradient makes %g\n", pg[k], flux,
            o.D[VectorAt(OUT_FLUX, PHASE_G, 0)][VectorAt(IN_GP, PHASE_G, 0)]);

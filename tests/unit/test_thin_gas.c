@@ -64,16 +64,17 @@ typedef struct {
   PointState state;
 } At;
 
-static At Evaluated(SmallScene *s, PetscInt p, const double *x, bool relative)
+static At AtNodes(SmallScene *s, PetscInt p, const double *x, bool relative)
 {
-  At          at;
-  Reach       r;
-  PointOutput o;
+  At             at;
+  ParticleResult e;
 
   s->m.relative_gas = relative;
   ModelClearFailure(&s->m);
   ModelGive(&s->m, x, false);
-  at.status = ParticleEvaluate(&s->m, p, x, false, &r, at.in, &at.state, &o);
+  at.status = ParticleEvaluate(&s->m, p, x, false, &e);
+  at.state  = e.state;
+  memcpy(at.in, e.in, sizeof(at.in));
   return at;
 }
 
@@ -100,7 +101,7 @@ static void TestShare(void **state)
     Call(PetscMalloc1(m->map.n_local * n, &x));
     RandomUnknowns(m, s->stage.dt, 30, x);
     for (PetscInt p = 0; p < m->P.n; p++) {
-      const At     one = Evaluated(s, p, x, false), two = Evaluated(s, p, x, true);
+      const At     one = AtNodes(s, p, x, false), two = AtNodes(s, p, x, true);
       const double own = m->P.f[P_PG][p], a = own / fmax(Nodal(m, p), 0.5 * own);
 
       Check(one.status == CL_OK && two.status == CL_OK);
@@ -138,7 +139,7 @@ static void TestExpands(void **state)
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int relative = 0; relative < 2; relative++) {
-      const At at = Evaluated(s, p, x, relative);
+      const At at = AtNodes(s, p, x, relative);
 
       refused[relative] += at.status != CL_OK;
       if (relative && at.status == CL_OK)
@@ -165,8 +166,8 @@ static void TestCompression(void **state)
   (void)state;
   s->m.stage.dt = dt;
   for (PetscInt p = 0; p < s->m.P.n; p++) {
-    from = fmax(from, fabs(Evaluated(s, p, s->stage.x_star, true).state.squeezed) * dt);
-    to   = fmax(to, fabs(Evaluated(s, p, s->m.x_n, true).state.squeezed) * dt);
+    from = fmax(from, fabs(AtNodes(s, p, s->stage.x_star, true).state.squeezed) * dt);
+    to   = fmax(to, fabs(AtNodes(s, p, s->m.x_n, true).state.squeezed) * dt);
   }
   Say("heat of compression at the starred pressures %.1e J, of those at t_n %.1e\n", Largest(from), Largest(to));
   Check(Largest(to) > 0.0 && Largest(from) < 1e-6 * Largest(to));
