@@ -48,9 +48,9 @@ def counts(root):
 
 
 CEILINGS = {
-    "keys of a case": 242,
-    "... that choose numerics": 18,
-    "lines of C in src and include": 44576,  # 93 more: the table of findings and what says them
+    "keys of a case": 241,
+    "... that choose numerics": 17,
+    "lines of C in src and include": 44737,  # 161 more: saturations carried with the total flow (456)
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 1,

@@ -3,7 +3,7 @@
 
 #include "tangent.h"
 
-/* (200): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
+/* (200), (456): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
 INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
