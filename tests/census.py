@@ -48,14 +48,14 @@ def counts(root):
 
 
 CEILINGS = {
-    "keys of a case": 242,
-    "... that choose numerics": 18,
-    "lines of C in src and include": 44642,  # 66 more: tableaux of any number of stages, structs in place of long lists of parameters
+    "keys of a case": 241,
+    "... that choose numerics": 17,
+    "lines of C in src and include": 44803,  # 224 more: saturations carried with the total flow, tableaux of any number of stages, structs in place of long lists of parameters
     f"functions with {MANY} parameters or more": 21,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
-    "words of docs and README": 39906,
-    "words of the equations": 11913,
+    "words of docs and README": 39830,
+    "words of the equations": 11912,
     "files in scripts": 13,
 }
 

@@ -121,7 +121,7 @@ static inline const char *CaseNeedsImplicit(const Case *c)
 {
   const char *scene = SceneNeedsImplicit(&c->scene);
 
-  return scene || c->integrator == INTEGRATOR_AUTO ? scene : SceneStabilisesImplicit(&c->scene, 0);
+  return scene || c->integrator == INTEGRATOR_AUTO ? scene : SceneStabilisesImplicit(&c->scene);
 }
 
 /* The case as it holds in stage k; the case itself if it has no stages. */

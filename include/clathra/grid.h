@@ -126,6 +126,7 @@ typedef struct {
   const double *value; /* [n_local], of any unit; a node where it is not finite has none */
   const double *flow;  /* [n_local][CL_DIM]: the way it is carried, of which only signs count */
   double        least; /* what differences to both sides together have to exceed to be seen */
+  bool          bends; /* every bend counts, not those alone that the next node has the other way */
 } NodalField;
 
 /* Of a node along an axis: how much the field alternates there, 0 to 1 (440); 1 where it has neighbours on both sides.

@@ -52,7 +52,7 @@ typedef struct {
   double          m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double          T_n, Sh_n; /* at t_n */
   SkeletonHistory skeleton;
-  double          spread[PHASE_COUNT];  /* (200) at t_n, m^2/(Pa s) */
+  double          spread[PHASE_COUNT];  /* (200), (456) at t_n, m^2/(Pa s) */
   double          upwind[CL_SYMMETRIC]; /* (293), W/(m K) */
   double proj[PHASE_COUNT][CL_DIM];     /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */

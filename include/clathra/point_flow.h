@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include "clathra/dimension.h"
+#include "clathra/fields.h"
 #include "clathra/inline.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
@@ -155,6 +156,61 @@ INLINE double ExchangeShare(double mobility, double storage, const double l[CL_D
   for (int d = 0; d < CL_DIM; d++)
     sum += 0.5 / (l[d] * l[d]);
   return -expm1(-dt * sum * mobility / storage);
+}
+
+/* Two fluids that flow through a particle at t_n. */
+typedef struct {
+  double mobility[PHASE_COUNT];                /* l = k_a k_r/mu, m^2/(Pa s) */
+  double less[PHASE_COUNT], more[PHASE_COUNT]; /* those at p_c - half and p_c + half */
+  double half;                                 /* by how much p_c differs within the cell, Pa */
+  double heavier;                              /* rho_w - rho_g, kg/m^3 */
+  double J[CL_DIM];                            /* volume of both, relative to the skeleton, m/s */
+  double grad_pc[CL_DIM];                      /* Pa/m */
+  double h[CL_DIM];                            /* h* of the cell, m */
+} TwoFluids;
+
+/* h* of (456), m: the width h of a cell times four times the mean product of its two nodes' weights over particles of
+   half-length l, what storage has in common with a neighbour.  3/4 h for two particles. */
+INLINE double CarryingWidth(double h, double l)
+{
+  const double part = l < 0.5 * h ? l / h : 0.5;
+
+  return h * (2.0 + 4.0 * part * part) / 3.0;
+}
+
+/* Share of gravity's drive of the fluids past each other that the gradient of p_c does not hold: 0 where they are at
+   rest, 1 where p_c is uniform; dimensionless.  Gravity b, m/s^2. */
+INLINE double Segregating(const TwoFluids *f, const double b[CL_DIM])
+{
+  const double by_gravity = f->heavier * VectorDot(b, b);
+
+  if (by_gravity == 0.0)
+    return 0.0;
+  const double share = 1.0 + VectorDot(f->grad_pc, b) / by_gravity;
+  return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+}
+
+#define CL_PECLET_LEAST 1e-4 /* below, Pe coth Pe - 1 is Pe^2/3 to all digits */
+
+/* (456) but for theta: diffusion of p_c that carries the saturations with the flow of both fluids together, m^2/(Pa s);
+   gravity b, m/s^2; beds: null where there are none. */
+INLINE double SaturationDiffusion(const TwoFluids *f, const double b[CL_DIM], const Beds *beds)
+{
+  const double l[PHASE_COUNT] = {f->mobility[PHASE_W], f->mobility[PHASE_G]};
+  const double both = l[PHASE_W] * l[PHASE_G] / (l[PHASE_W] + l[PHASE_G]), segregating = Segregating(f, b);
+  const double water[2]    = {f->less[PHASE_W] / (f->less[PHASE_W] + f->less[PHASE_G]),
+                              f->more[PHASE_W] / (f->more[PHASE_W] + f->more[PHASE_G])};
+  const double per_flow    = (water[1] - water[0]) / (2.0 * f->half);
+  const double per_gravity = (water[1] * f->more[PHASE_G] - water[0] * f->less[PHASE_G]) / (2.0 * f->half) * f->heavier;
+  double       down[CL_DIM], Pe = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    down[d] = segregating * b[d];
+  if (beds)
+    BedsDrive(beds, down);
+  for (int d = 0; d < CL_DIM; d++)
+    Pe += f->h[d] * fabs(per_flow * f->J[d] + per_gravity * down[d]) / (2.0 * both);
+  return both * (Pe < CL_PECLET_LEAST ? Pe * Pe / 3.0 : Pe / tanh(Pe) - 1.0);
 }
 
 /* (18) along one axis, kg m/s: Darcy flux J and projected less own gradient, both on the configuration at t_n. */

@@ -57,9 +57,8 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 /* Numerics of the model, which a restart may change. */
 typedef struct {
-  double ghost_penalty;     /* g, 0 = off; default 0.1 */
-  bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
-  bool   saturation_upwind; /* (200); default false */
+  double ghost_penalty; /* g, 0 = off; default 0.1 */
+  bool   donor;         /* (332): gas has the mobility of where it comes from; default false */
 } Stabilisation;
 
 typedef struct Scene {
@@ -192,18 +191,48 @@ static inline bool SceneStartsWithoutGas(const Scene *c)
   return without;
 }
 
-/* ... and is gas let in? */
-static inline bool SceneLetsGasIn(const Scene *c)
+/* Is a fluid let in by its rate? */
+static inline bool SceneLetsIn(const Scene *c, int f)
 {
   bool enters = false;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Schedule *gas = c->bc[k].type == BC_WELL ? &c->bc[k].rate[PHASE_G] : &c->bc[k].phase[PHASE_G];
+    const Schedule *rate = c->bc[k].type == BC_WELL ? &c->bc[k].rate[f] : &c->bc[k].phase[f];
 
-    for (PetscInt i = 0; (c->bc[k].type == BC_INFLOW || c->bc[k].type == BC_WELL) && i < gas->n; i++)
-      enters = enters || gas->y[i] > 0.0;
+    for (PetscInt i = 0; (c->bc[k].type == BC_INFLOW || c->bc[k].type == BC_WELL) && i < rate->n; i++)
+      enters = enters || rate->y[i] > 0.0;
   }
-  return enters && SceneStartsWithoutGas(c);
+  return enters;
+}
+
+/* Is gas let in where a region starts without? */
+static inline bool SceneLetsGasIn(const Scene *c)
+{
+  return SceneLetsIn(c, PHASE_G) && SceneStartsWithoutGas(c);
+}
+
+/* Is there gas from the start on or let in (200)?  Else it comes from hydrate alone. */
+static inline bool SceneCarriesGas(const Scene *c)
+{
+  bool carries = SceneLetsIn(c, PHASE_G);
+
+  for (PetscInt k = 0; k < c->nregion; k++)
+    carries = carries || (c->region[k].material >= 0 && c->region[k].Sg > 0.0);
+  return carries;
+}
+
+/* Does all of the sediment hold gas, so that its pressure may change in proportion to itself (151), (416)?  Not where
+   it may vanish (101). */
+static inline bool SceneKeepsGas(const Scene *c)
+{
+  return (c->fields.has & HAS_GAS) && c->nmaterial > 0 && c->material[0].gas.trace == 0.0;
+}
+
+/* Are saturations carried wherever they bend (456), as fronts are let in or gas may vanish?  Else where they alternate.
+ */
+static inline bool SceneHasFronts(const Scene *c)
+{
+  return SceneLetsIn(c, PHASE_W) || SceneLetsIn(c, PHASE_G) || !SceneKeepsGas(c);
 }
 
 /* Has gas the mobility of where it comes from (332)? */
@@ -252,13 +281,6 @@ static inline bool SceneHasBeds(const Scene *c)
 static inline bool SceneSharesFlow(const Scene *c)
 {
   return SceneHasBeds(c) || SceneContrast(c) > 1.0;
-}
-
-/* Does all of the sediment hold gas, so that its pressure may change in proportion to itself (151), (416)?  Not where
-   it may vanish (101). */
-static inline bool SceneKeepsGas(const Scene *c)
-{
-  return (c->fields.has & HAS_GAS) && c->nmaterial > 0 && c->material[0].gas.trace == 0.0;
 }
 
 /* Do pressures even out within cells (353)?  Where layers differ in permeability. */
@@ -317,21 +339,10 @@ static inline bool SceneHasLongCells(const Scene *c)
   return CL_DIM == 2 && c->fields.heat;
 }
 
-/* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:
-   there are no more. */
-static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
+/* The stabilisation that is on by a key and that steps without a matrix go without, as the case says it; or NULL. */
+static inline const char *SceneStabilisesImplicit(const Scene *c)
 {
-  const struct {
-    bool        on;
-    const char *word;
-  } known[] = {{c->stabilisation.donor, "stabilisation_donor"},
-               {c->stabilisation.saturation_upwind, "stabilisation_saturation"}};
-
-  for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
-    if (known[i].on && k-- == 0)
-      return known[i].word;
-  }
-  return NULL;
+  return c->stabilisation.donor ? "stabilisation_donor" : NULL;
 }
 
 /* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if

@@ -138,8 +138,6 @@ const Key case_key[] = {
          "at free surfaces; 0 = off", BY(INTEGRATORS_IMPLICIT)),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes upstream: for sand with gas beside clay"),
-    BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
-            "upwind diffusion of saturations, where capillary pressure is weak"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

@@ -26,7 +26,7 @@ PetscErrorCode HeatAlternation(Explicit *e)
         flow[I * CL_DIM + d] += SpecificHeat(mat, k) * rho * b[B_Fluid(s, k) + B_J + d];
     }
   }
-  PetscCall(NodeMapAlternation(&e->m->grid, &e->map, &(NodalField){T, flow, HEAT_LEAST_T}, e->alternates));
+  PetscCall(NodeMapAlternation(&e->m->grid, &e->map, &(NodalField){T, flow, HEAT_LEAST_T, false}, e->alternates));
   PetscCall(PetscFree2(T, flow));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

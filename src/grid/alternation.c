@@ -27,8 +27,8 @@ static void Beside(const Grid *g, const NodeMap *map, const NodalField *f, Petsc
   }
 }
 
-/* How unlike the slopes on both sides of a node are: 0 within a factor of three, 1 where the field has a minimum, -1
-   where it has a maximum. */
+/* How unlike the slopes on both sides of a node are: 0 within a factor of three (bends: where they are equal, all from
+   a factor of three on), 1 where the field has a minimum, -1 where it has a maximum. */
 static double Bend(const Grid *g, const NodeMap *map, const NodalField *f, PetscInt I, int d, const PetscInt K[2])
 {
   const PetscInt i = map->ij[I][d];
@@ -37,9 +37,9 @@ static double Bend(const Grid *g, const NodeMap *map, const NodalField *f, Petsc
 
   if (fabs(change[0]) + fabs(change[1]) < f->least)
     return 0.0;
-  const double turn = 2.0 * fabs(after - before) / (fabs(before) + fabs(after)) - 1.0;
+  const double turn = 2.0 * fabs(after - before) / (fabs(before) + fabs(after)) - (f->bends ? 0.0 : 1.0);
 
-  return turn > 0.0 ? copysign(turn, after - before) : 0.0;
+  return turn > 0.0 ? copysign(fmin(turn, 1.0), after - before) : 0.0;
 }
 
 static PetscErrorCode FindBends(const Grid *g, NodeMap *map, const NodalField *f, double *bend)
@@ -102,6 +102,13 @@ PetscErrorCode NodeMapAlternation(const Grid *g, NodeMap *map, const NodalField 
   double *found;
 
   PetscFunctionBeginUser;
+  if (f->bends) {
+    PetscCall(PetscArrayzero(share, map->n_local * CL_DIM * ALTERNATION_COUNT));
+    PetscCall(FindBends(g, map, f, share));
+    for (PetscInt k = 0; k < map->n_local * CL_DIM; k++)
+      share[k * ALTERNATION_COUNT + ALTERNATION_SHARE] = fabs(share[k * ALTERNATION_COUNT + ALTERNATION_SHARE]);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscCalloc1((size_t)CL_DIM * (size_t)map->n_local, &found));
   PetscCall(PetscArrayzero(share, map->n_local * CL_DIM * ALTERNATION_COUNT));
   PetscCall(FindBends(g, map, f, share));

@@ -12,7 +12,7 @@ PetscErrorCode AdditionsReserve(Model *m)
   PetscFunctionBeginUser;
   if (SceneDonor(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
-  if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G])
+  if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && (!to->donor || SceneCarriesGas(m->c)))
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
@@ -35,8 +35,8 @@ PetscErrorCode AdditionsOfStage(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (200): diffusion of p_c that carries the saturations with the flow of both fluids, or that of one that flows alone.
- */
+/* With gas of where it comes from: diffusion of p_c with the flow of both fluids, or that of one that flows alone
+ * (200). */
 static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, double D[PHASE_COUNT])
 {
   const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
@@ -63,6 +63,60 @@ static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, doubl
     if (most > 1e-4)
       D[k] = both * (most / tanh(most) - 1.0);
   }
+}
+
+#define LEAST_CHANGE 1e-3 /* of p_0: less than this p_c is not taken to differ by in a cell */
+
+/* l_pi = k_a k_r,pi/mu_pi of particle p at another capillary pressure, m^2/(Pa s). */
+static void MobilitiesAt(const Material *mat, const PointProperties *q, double pc, double l[PHASE_COUNT])
+{
+  double       slope[2];
+  const double sg = RetentionGasShare(&mat->retention, pc, q->Sh, &slope[0], &slope[1]);
+  const double w  = KrArgumentOf(mat->relperm.of_pores, 1.0 - sg, q->Sh).v,
+               g  = KrArgumentOf(mat->relperm.of_pores, sg, q->Sh).v;
+
+  l[PHASE_W] = KrFloored(RelPermWater(&mat->relperm, w, slope)) / q->resist[PHASE_W];
+  l[PHASE_G] = KrFloored(RelPermGas(&mat->relperm, g, slope)) / q->resist[PHASE_G];
+}
+
+/* Volume of a fluid through a particle: its own velocity where that has a memory, else Darcy's law; m/s. */
+static void FluxOf(const Model *m, PetscInt p, const PointProperties *q, int k, double J[CL_DIM])
+{
+  double *const *f = (double *const *)m->P.f;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    if (m->c->fields.inertia)
+      J[d] =
+          q->phi * (1.0 - q->Sh) * q->s[k] * (f[VectorAt(P_VW, k, d)][p] - (m->c->fields.solid ? f[P_VS + d][p] : 0.0));
+    else
+      J[d] = -q->kr[k] / q->resist[k] * (f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
+  }
+  if (!m->c->fields.inertia)
+    Drive(m, p, J);
+}
+
+double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q)
+{
+  double *const  *f   = (double *const *)m->P.f;
+  const Material *mat = ParticleMaterial(m, p);
+  TwoFluids       two = {.heavier = q->rho[PHASE_W] - q->rho[PHASE_G]};
+  double          J[PHASE_COUNT][CL_DIM];
+
+  CellWidths(m, p, two.h);
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    two.mobility[k] = q->kr[k] / q->resist[k];
+    FluxOf(m, p, q, k, J[k]);
+  }
+  for (int d = 0; d < CL_DIM; d++) {
+    two.J[d]       = J[PHASE_W][d] + J[PHASE_G][d];
+    two.grad_pc[d] = f[VectorAt(P_GW, PHASE_G, d)][p] - f[VectorAt(P_GW, PHASE_W, d)][p];
+    two.half += 0.5 * two.h[d] * fabs(two.grad_pc[d]);
+    two.h[d] = CarryingWidth(two.h[d], f[P_L + d][p]);
+  }
+  two.half = fmax(two.half, LEAST_CHANGE * mat->retention.p0);
+  MobilitiesAt(mat, q, f[P_PG][p] - f[P_PW][p] - two.half, two.less);
+  MobilitiesAt(mat, q, f[P_PG][p] - f[P_PW][p] + two.half, two.more);
+  return SaturationDiffusion(&two, m->c->gravity, m->beds ? &m->beds[p].A : NULL);
 }
 
 void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double a[CL_DIM])
@@ -131,8 +185,10 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
 {
   Additions *to = m->added;
 
-  if (to->spread)
+  if (to->spread && to->donor)
     SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
+  else if (to->spread)
+    to->spread[PHASE_COUNT * p] = to->spread[PHASE_COUNT * p + 1] = ModelSaturationDiffusion(m, p, q);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->long_cell) {

@@ -44,7 +44,7 @@ struct Additions {
   Donor          *donor;     /* [n] (332); NULL when off */
   Exchange       *exchange;  /* [n] (353); NULL when off */
   double         *source;    /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
-  double         *spread;    /* [n][2] (200); NULL when off */
+  double         *spread;    /* [n][2] (200), (456); NULL when off */
   double         *upwind;    /* [n][3] (293); NULL when off */
   double         *long_cell; /* [n] (444), W m/K; NULL when off */
   double         *held;      /* [n] (381); NULL when off */

@@ -1,9 +1,9 @@
-/* Where the conductivity that carries heat with the flow (293) is needed: (440) of docs/equations.md. */
+/* Where what carries heat (293) and saturations (456) with the flow is needed: (440), (456) of docs/equations.md. */
 #include "clathra/point_heat.h"
 #include "gather.h"
 
-/* Heat that the fluids carry along axis d at t_n, of any unit. */
-static double CarriedAlong(const Model *m, PetscInt I, int d)
+/* Heat (of any unit) or volume that the fluids carry along axis d at t_n. */
+static double CarriedAlong(const Model *m, PetscInt I, int d, bool heat)
 {
   const FieldSet *fs  = &m->c->fields;
   double          sum = 0.0;
@@ -14,7 +14,7 @@ static double CarriedAlong(const Model *m, PetscInt I, int d)
     if (!fs->phase[f])
       continue;
     DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
-    sum += SpecificHeat(NodeMaterial(m, I), f) * m->coef[I * NC_COUNT + NC_RHO + f] * J[d];
+    sum += heat ? SpecificHeat(NodeMaterial(m, I), f) * m->coef[I * NC_COUNT + NC_RHO + f] * J[d] : J[d];
   }
   return sum;
 }
@@ -35,34 +35,43 @@ static double ShareOf(const Model *m, PetscInt p, const double K[CL_SYMMETRIC], 
   return AlternationOf(mean, h, K);
 }
 
-/* Of T at t_n. */
-static PetscErrorCode Shares(Model *m, double *share)
+#define LEAST_SHARE 0.01 /* of the open pores: smaller differences of saturation are not seen */
+
+/* s_g at a node's pressures at t_n. */
+static double GasShareAt(const Model *m, PetscInt I)
+{
+  const double *x = &m->x_n[I * m->c->fields.n];
+  double        slope[2];
+
+  return RetentionGasShare(&NodeMaterial(m, I)->retention,
+                           x[PlaceP(&m->c->fields, PHASE_G)] - x[PlaceP(&m->c->fields, PHASE_W)], m->hydrate[I],
+                           &slope[0], &slope[1]);
+}
+
+/* Of T at t_n, or of s_g. */
+static PetscErrorCode Shares(Model *m, bool heat, double *share)
 {
   const FieldSet *fs = &m->c->fields;
   const PetscInt  n  = m->map.n_local;
-  double         *T, *flow;
+  double         *value, *flow;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &T, n * CL_DIM, &flow));
+  PetscCall(PetscMalloc2(n, &value, n * CL_DIM, &flow));
   for (PetscInt I = 0; I < n; I++) {
-    T[I] = m->x_n[I * fs->n + PlaceT(fs)];
+    value[I] = heat ? m->x_n[I * fs->n + PlaceT(fs)] : GasShareAt(m, I);
     for (int d = 0; d < CL_DIM; d++)
-      flow[I * CL_DIM + d] = CarriedAlong(m, I, d);
+      flow[I * CL_DIM + d] = CarriedAlong(m, I, d, heat);
   }
-  PetscCall(NodeMapAlternation(&m->grid, &m->map, &(NodalField){T, flow, HEAT_LEAST_T}, share));
-  PetscCall(PetscFree2(T, flow));
+  const NodalField field = {value, flow, heat ? HEAT_LEAST_T : LEAST_SHARE, !heat && SceneHasFronts(m->c)};
+  PetscCall(NodeMapAlternation(&m->grid, &m->map, &field, share));
+  PetscCall(PetscFree2(value, flow));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UpwindLimit(Model *m)
+static PetscErrorCode LimitHeat(Model *m, double *share)
 {
-  double *share;
-
   PetscFunctionBeginUser;
-  if (!SceneCarriesHeat(m->c))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(ALTERNATION_COUNT * CL_DIM * m->map.n_local, &share));
-  PetscCall(Shares(m, share));
+  PetscCall(Shares(m, true, share));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double *K     = &m->added->upwind[CL_SYMMETRIC * p];
     double  trace = 0.0;
@@ -76,6 +85,39 @@ PetscErrorCode UpwindLimit(Model *m)
     for (int k = 0; k < CL_SYMMETRIC; k++)
       K[k] *= theta;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (456): axes count by the gradient of p_c. */
+static PetscErrorCode LimitSaturations(Model *m, double *share)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Shares(m, false, share));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    double *D = &m->added->spread[PHASE_COUNT * p], K[CL_SYMMETRIC] = {0.0};
+
+    if (D[PHASE_W] == 0.0)
+      continue;
+    for (int d = 0; d < CL_DIM; d++)
+      K[cl_symmetric[d][d]] = PetscSqr(m->P.f[VectorAt(P_GW, PHASE_G, d)][p] - m->P.f[VectorAt(P_GW, PHASE_W, d)][p]);
+    D[PHASE_W] = D[PHASE_G] = D[PHASE_W] * ShareOf(m, p, K, share);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode UpwindLimit(Model *m)
+{
+  const bool saturations = m->added->spread && !m->added->donor;
+  double    *share;
+
+  PetscFunctionBeginUser;
+  if (!SceneCarriesHeat(m->c) && !saturations)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(ALTERNATION_COUNT * CL_DIM * m->map.n_local, &share));
+  if (SceneCarriesHeat(m->c))
+    PetscCall(LimitHeat(m, share));
+  if (saturations)
+    PetscCall(LimitSaturations(m, share));
   PetscCall(PetscFree(share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,7 +3,7 @@
 
 #include "tangent.h"
 
-/* (200): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
+/* (200), (456): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
 INLINE void Spread(const PointInput *x, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    bool tangent, PointOutput *o)
 {

@@ -54,23 +54,11 @@ static void Advice(const Stepper *s, ClStatus status, char words[STEPPER_ADVICE]
              what, HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : "");
 }
 
-/* Is there sediment without gas, where methane in water has the pressure that gas would have (101)? */
-static bool LacksGas(const Scene *c)
-{
-  return c->material[0].gas.trace > 0.0;
-}
-
 void StepperAdviceSlow(const Stepper *s, bool newton, char words[STEPPER_ADVICE])
 {
-  static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
-                                            "stabilisation_saturation: no, where gas comes and goes; "};
-  const Scene             *c             = s->model->c;
-  const bool               upwind        = c->stabilisation.saturation_upwind;
-
   snprintf(
-      words, STEPPER_ADVICE, "%s%s%s%s",
+      words, STEPPER_ADVICE, "%s%s%s",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
-      c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",

@@ -258,9 +258,9 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
     s->scheme = StepperSchemeOf(INTEGRATOR_HYBRID);
   PetscCall(
       PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", StepperName(s), s->auto_.on ? ", for now" : ""));
-  const char *word; /* stabilisations that implicit steps have alone */
-  for (int k = 0; s->auto_.on && (word = SceneStabilisesImplicit(&c->scene, k)); k++)
-    PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", k ? ", " : "; hybrid goes without ", word));
+  const char *word = SceneStabilisesImplicit(&c->scene);
+  if (s->auto_.on && word)
+    PetscCall(PetscPrintf(s->model->grid.comm, "; hybrid goes without %s", word));
   PetscCall(PetscPrintf(s->model->grid.comm, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

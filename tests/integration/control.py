@@ -257,9 +257,9 @@ def check_advice():
     check_true("what to try stands under why it was given up", done.returncode == 3 and "What to try, in this order" in said[at + 1]
                and "docs/giving_up.md" in said[at + 1], said[at : at + 2])  # fmt: skip
     check_true("... hybrid among it, which knows the scene", "stepper_type hybrid" in said[at + 1], said[at + 1])
-    done = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", "-stabilisation_saturation", "yes", out=scratch() / "out")
+    done = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", "-inertia", "no", out=scratch() / "out")
     text = done.stdout[done.stdout.index("Given up") :]
-    check_true("... and not where it does not", "hybrid does not know stabilisation_saturation" in done.stdout and "What to try" in text and "stepper_type hybrid" not in text, text)
+    check_true("... and not where it does not", "hybrid does not know inertia: no" in done.stdout and "What to try" in text and "stepper_type hybrid" not in text, text)
     jump = ("-regions", "column,wet", "-region_column_lower", "0.5 m, 0 m", "-region_wet_lower", "0 m, 0 m", "-region_wet_upper", "0.5 m, 0.02 m", "-region_wet_material", "sediment", "-region_wet_pressure", "3.25 MPa",
             "-region_wet_temperature", "4 degC", "-region_wet_Sh", 0, "-region_wet_Sw", 1, "-region_wet_Sg", 0)  # fmt: skip
     said = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", *jump, out=scratch() / "out").stdout.splitlines()

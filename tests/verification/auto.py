@@ -47,11 +47,11 @@ fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
 check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
 
 # ---------------------------------------------------------------------- stabilisations that only implicit steps know
-STABILISED = ("-stabilisation_saturation", "yes", "-inertia", "yes", "-stepper_adapt", "yes", "-case_check")
+STABILISED = ("-stabilisation_donor", "yes", "-inertia", "yes", "-stepper_adapt", "yes", "-case_check")
 chosen, refused = (launch(binary(), CASES / "buckley_leverett", *STABILISED, "-stepper_type", kind, out=scratch() / "out") for kind in ("auto", "hybrid"))
 check_true("auto's implicit steps have them, hybrid goes without, and the start says so",
-           chosen.returncode == 0 and "hybrid goes without stabilisation_saturation" in chosen.stdout and "hybrid goes without" not in run.output, chosen.stdout[-300:])  # fmt: skip
-check_true("... and hybrid alone refuses them", refused.returncode == 2 and "hybrid does not know stabilisation_saturation" in refused.stdout, refused.stdout[-300:])
+           chosen.returncode == 0 and "hybrid goes without stabilisation_donor" in chosen.stdout and "hybrid goes without" not in run.output, chosen.stdout[-300:])  # fmt: skip
+check_true("... and hybrid alone refuses them", refused.returncode == 2 and "hybrid does not know stabilisation_donor" in refused.stdout, refused.stdout[-300:])
 
 # ------------------------------------------------------------------------------- a change leaves everything as it was
 rows = run.balance["time_s"]

@@ -113,6 +113,5 @@ if __name__ == "__main__":
     turned("layers, ", True)
     turned("layers, hybrid, ", True, QUICK)
     turned("layers, hybrid, 3 storage passes, ", True, [*QUICK, "-stepper_storage_passes", "3"])
-    turned("saturations carried, ", options=[*TIGHT, "-stabilisation_saturation", "yes"])
     shifted()
     finish()

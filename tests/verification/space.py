@@ -237,7 +237,7 @@ def drawn_out_scenes():
     del wet["bc"]["sun"]
     compare("block, hm, quasi-static", wet, "-fields", "solid,water", "-inertia", "no", *WITHOUT_GAS)
     compare("block, half the cell's mean strain, saturations and heat carried, beds, heat of compression", block(), "-mean_strain", 0.5,
-            "-stabilisation_saturation", "yes", "-mat_sediment_permeability_ratio", 0.1,
+            "-mat_sediment_permeability_ratio", 0.1,
             "-mat_sediment_permeability_dip", "20 deg", "-compression_heat", "yes", rings=(0,))  # fmt: skip
     compare("block, multigrid", block(), "-reduced_pc_type", "fieldsplit", rings=(0,))
     for flow in ("menetrey_willam", "mohr_coulomb"):
