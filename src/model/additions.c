@@ -132,12 +132,16 @@ void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double 
   }
 }
 
-/* Conductivity that carries heat with the flow of t_n (293). */
-static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[CL_SYMMETRIC])
+void AdditionsUpwind(const Model *m, PetscInt p, const PointProperties *q, double spread, double K[CL_SYMMETRIC])
 {
-  double a[CL_DIM], h[CL_DIM];
+  double *const  *f   = m->P.f;
+  const Material *mat = ParticleMaterial(m, p);
+  double          a[CL_DIM], h[CL_DIM];
 
   ModelHeatFlow(m, p, q, a);
+  for (int d = 0; spread != 0.0 && d < CL_DIM; d++)
+    a[d] += spread * (f[VectorAt(P_GW, PHASE_G, d)][p] - f[VectorAt(P_GW, PHASE_W, d)][p]) *
+            (SpecificHeat(mat, PHASE_W) * q->rho[PHASE_W] - SpecificHeat(mat, PHASE_G) * q->rho[PHASE_G]);
   Drive(m, p, a);
   CellWidths(m, p, h);
   (void)HeatUpwind(q->kappa, a, h, K);
@@ -190,7 +194,7 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
   else if (to->spread)
     to->spread[PHASE_COUNT * p] = to->spread[PHASE_COUNT * p + 1] = ModelSaturationDiffusion(m, p, q);
   if (to->upwind)
-    UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
+    AdditionsUpwind(m, p, q, 0.0, &to->upwind[CL_SYMMETRIC * p]);
   if (to->long_cell) {
     double h[CL_DIM];
 

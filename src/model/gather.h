@@ -253,6 +253,8 @@ PetscErrorCode ModelResizeNodal(Model *m);
 PetscErrorCode AdditionsReserve(Model *m);
 PetscErrorCode AdditionsOfStage(Model *m);
 void           AdditionsSet(Model *m, PetscInt p, const PointProperties *q);
+/* Conductivity that carries heat with the flow of t_n (293), with D of (456) (m^2/(Pa s)); W/(m K). */
+void AdditionsUpwind(const Model *m, PetscInt p, const PointProperties *q, double spread, double K[CL_SYMMETRIC]);
 PetscErrorCode UpwindLimit(Model *m);
 /* Model.face and Model.wall on the configuration at t_n (faces.c); Model.row_scale and col_scale of the stage. */
 PetscErrorCode FacesStart(Model *m);

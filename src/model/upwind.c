@@ -68,13 +68,19 @@ static PetscErrorCode Shares(Model *m, bool heat, double *share)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LimitHeat(Model *m, double *share)
+/* spread: D of (456), two a particle; or null. */
+static PetscErrorCode LimitHeat(Model *m, const double *spread, double *share)
 {
   PetscFunctionBeginUser;
   PetscCall(Shares(m, true, share));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    double *K     = &m->added->upwind[CL_SYMMETRIC * p];
-    double  trace = 0.0;
+    double         *K     = &m->added->upwind[CL_SYMMETRIC * p];
+    double          trace = 0.0;
+    PointProperties q;
+    const char     *why;
+
+    if (spread && spread[PHASE_COUNT * p] != 0.0 && ModelParticleProperties(m, p, &q, &why) == CL_OK)
+      AdditionsUpwind(m, p, &q, spread[PHASE_COUNT * p], K);
 
     for (int d = 0; d < CL_DIM; d++)
       trace += K[cl_symmetric[d][d]];
@@ -114,10 +120,10 @@ PetscErrorCode UpwindLimit(Model *m)
   if (!SceneCarriesHeat(m->c) && !saturations)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(ALTERNATION_COUNT * CL_DIM * m->map.n_local, &share));
-  if (SceneCarriesHeat(m->c))
-    PetscCall(LimitHeat(m, share));
   if (saturations)
     PetscCall(LimitSaturations(m, share));
+  if (SceneCarriesHeat(m->c))
+    PetscCall(LimitHeat(m, saturations ? m->added->spread : NULL, share));
   PetscCall(PetscFree(share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
