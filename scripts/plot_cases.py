@@ -110,7 +110,7 @@ def terzaghi(run, left, right):
 def buckley_leverett(run, left, right):
     B = ladder.BuckleyLeverett
     for axes, cells in ((left, 50), (right, 100)):
-        profiles(axes, run("-grid_cells", f"{cells},1", "-stepper_dt", 1500 / cells), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
+        profiles(axes, run("-grid_cells", f"{cells},1", "-stepper_dt", f"{1500 // cells} s"), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
         axes.set(xlabel="x (m)", ylabel="water saturation (–)", title=f"{cells} cells")
 
 
