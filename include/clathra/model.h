@@ -225,6 +225,7 @@ enum {
   NC_COMPLIANCE,
   NC_REACTION,
   NC_REACTION_HEAT,
+  NC_SH, /* S_h */
   NC_DRAG,
   NC_KR   = NC_DRAG + PHASE_COUNT,
   NC_P    = NC_KR + PHASE_COUNT, /* of the particles' pressures */

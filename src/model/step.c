@@ -149,6 +149,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     c[NC_COMPLIANCE] += VS * Compliance(&m->c->fields, q);
     c[NC_REACTION] += VS * q->reaction;
     c[NC_REACTION_HEAT] += VS * q->reaction_heat;
+    c[NC_SH] += VS * q->Sh;
     if (VS > m->most[I]) {
       m->most[I]     = VS;
       m->material[I] = ParticleMaterial(m, p);

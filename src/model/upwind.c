@@ -44,8 +44,8 @@ static double GasShareAt(const Model *m, PetscInt I)
   double        slope[2];
 
   return RetentionGasShare(&NodeMaterial(m, I)->retention,
-                           x[PlaceP(&m->c->fields, PHASE_G)] - x[PlaceP(&m->c->fields, PHASE_W)], m->hydrate[I],
-                           &slope[0], &slope[1]);
+                           x[PlaceP(&m->c->fields, PHASE_G)] - x[PlaceP(&m->c->fields, PHASE_W)],
+                           m->coef[I * NC_COUNT + NC_SH], &slope[0], &slope[1]);
 }
 
 /* Of T at t_n, or of s_g. */
