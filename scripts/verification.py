@@ -250,7 +250,7 @@ def overview(records):
 def guards():
     """The page of tests/: each test, its ring, and what it guards."""
     build = (GUARDS.parent / "CMakeLists.txt").read_text()
-    full = set(re.search(r"^list\(APPEND full ([^)]*)\)", build, re.M)[1].split())
+    full = set(re.search(r"^list\(APPEND full\s([^)]*)\)", build, re.M)[1].split())
     text = ["# Tests", "", "Written by `scripts/verification.py` from the first sentence of each test; change that.", "",
             "`./check` runs the tests without *full*; `./check --full` runs all of them, unit tests on two ranks and under sanitizers, too.", "",
             "| test | ring | what it guards |", "|---|---|---|"]  # fmt: skip
