@@ -295,8 +295,6 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
-/* D of (456) but for theta, of particle p with properties q at t_n, m^2/(Pa s); a scene with two pressures. */
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q);
 /* Heat capacity that flows through a particle by Darcy's law with the gradients of t_n, W/(m^2 K); beds aside. */
 void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double a[CL_DIM]);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */

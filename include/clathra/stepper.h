@@ -95,7 +95,7 @@ typedef struct {
   double        *x_stage[DIRK_STAGES]; /* x at the end of each stage but the last */
   double        *m_star, *rates, *v_n; /* [n][TRIAL_MASSES], [n][TRIAL_SCALARS], [n][CL_DIM] */
   SkeletonStage *k_star;               /* [n]; null where the skeleton holds no history */
-  double        *e_plastic;            /* [n][5] errors of Trial.s; null without plasticity */
+  double        *e_plastic;            /* [n][TRIAL_PLASTIC] errors of Trial.s; null without plasticity */
   Trial          trial[DIRK_STAGES];
   double         drain; /* of the stages to come, 1/s */
   PetscInt       cap_nodes, cap_particles;
@@ -370,11 +370,5 @@ PetscErrorCode StepperFreeWork(StepperWork *w);
 /* In words, for messages. */
 const char *StepperStatusName(ClStatus st);
 const char *StepperName(const Stepper *s); /* of the integrator that works now */
-const Tableau *
-StepperTableau(const Stepper *s); /* of the implicit steps of this run, or of those that auto would take */
-/* p_w, p_g, T, S_h of particle p at t_n (Pa, degC, 1) and their rates in the last step (per s); zero where there is no
- * such field. */
-void StepperHistory(const Model *m, PetscInt p, double y[TRIAL_SCALARS], double rate[TRIAL_SCALARS]);
-/* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight
-   (s) is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
-PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
+/* Of the implicit steps of this run, or of those that auto would take. */
+const Tableau *StepperTableau(const Stepper *s);

@@ -102,16 +102,14 @@ PetscErrorCode NodeMapAlternation(const Grid *g, NodeMap *map, const NodalField 
   double *found;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(share, map->n_local * CL_DIM * ALTERNATION_COUNT));
+  PetscCall(FindBends(g, map, f, share));
   if (f->bends) {
-    PetscCall(PetscArrayzero(share, map->n_local * CL_DIM * ALTERNATION_COUNT));
-    PetscCall(FindBends(g, map, f, share));
     for (PetscInt k = 0; k < map->n_local * CL_DIM; k++)
       share[k * ALTERNATION_COUNT + ALTERNATION_SHARE] = fabs(share[k * ALTERNATION_COUNT + ALTERNATION_SHARE]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscCalloc1((size_t)CL_DIM * (size_t)map->n_local, &found));
-  PetscCall(PetscArrayzero(share, map->n_local * CL_DIM * ALTERNATION_COUNT));
-  PetscCall(FindBends(g, map, f, share));
   PetscCall(FindShares(g, map, f, share, found));
   for (PetscInt I = 0; I < map->n_owned; I++) { /* a bend beside a node that alternates will be the next one */
     for (int d = 0; d < CL_DIM; d++) {

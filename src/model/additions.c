@@ -79,25 +79,32 @@ static void MobilitiesAt(const Material *mat, const PointProperties *q, double p
   l[PHASE_G] = KrFloored(RelPermGas(&mat->relperm, g, slope)) / q->resist[PHASE_G];
 }
 
-/* Volume of a fluid through a particle: its own velocity where that has a memory, else Darcy's law; m/s. */
+/* Volume of a fluid through a particle along axis d by Darcy's law, m/s; beds aside. */
+static double DarcyAlong(const Model *m, PetscInt p, const PointProperties *q, int k, int d)
+{
+  return -q->kr[k] / q->resist[k] * (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
+}
+
+/* The same of all axes: by the fluid's own velocity where that has a memory, else by Darcy's law. */
 static void FluxOf(const Model *m, PetscInt p, const PointProperties *q, int k, double J[CL_DIM])
 {
-  double *const *f = (double *const *)m->P.f;
+  double *const *f = m->P.f;
 
   for (int d = 0; d < CL_DIM; d++) {
     if (m->c->fields.inertia)
       J[d] =
           q->phi * (1.0 - q->Sh) * q->s[k] * (f[VectorAt(P_VW, k, d)][p] - (m->c->fields.solid ? f[P_VS + d][p] : 0.0));
     else
-      J[d] = -q->kr[k] / q->resist[k] * (f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
+      J[d] = DarcyAlong(m, p, q, k, d);
   }
   if (!m->c->fields.inertia)
     Drive(m, p, J);
 }
 
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q)
+/* D of (456) but for theta, m^2/(Pa s). */
+static double SpreadByFlow(const Model *m, PetscInt p, const PointProperties *q)
 {
-  double *const  *f   = (double *const *)m->P.f;
+  double *const  *f   = m->P.f;
   const Material *mat = ParticleMaterial(m, p);
   TwoFluids       two = {.heavier = q->rho[PHASE_W] - q->rho[PHASE_G]};
   double          J[PHASE_COUNT][CL_DIM];
@@ -127,8 +134,7 @@ void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double 
     a[d] = 0.0;
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
-      a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
-              (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
+      a[d] += SpecificHeat(mat, k) * q->rho[k] * DarcyAlong(m, p, q, k, d);
   }
 }
 
@@ -192,7 +198,7 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
   if (to->spread && to->donor)
     SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
   else if (to->spread)
-    to->spread[PHASE_COUNT * p] = to->spread[PHASE_COUNT * p + 1] = ModelSaturationDiffusion(m, p, q);
+    to->spread[PHASE_COUNT * p] = to->spread[PHASE_COUNT * p + 1] = SpreadByFlow(m, p, q);
   if (to->upwind)
     AdditionsUpwind(m, p, q, 0.0, &to->upwind[CL_SYMMETRIC * p]);
   if (to->long_cell) {
