@@ -68,7 +68,7 @@ SECTION = {  # beside that table
     "gas": "Sediment without gas: gas that appears, vanishes, is let in (docs/equations.md, section 19); gas that is stretched (section 12)",
     "fluids": "Fluids: real methane, equilibrium in salt water, viscosities, ice, heat of reaction, thermal strain and pressurisation, heat of compression",
     "layers": "Layers of sand and clay: flow along and across them, a well in one",
-    "sealed layers": "A layer of a sealed body keeps its own pressure as far as its cells let it: lumped and consistent storage of hybrid, with Skempton's share of the load; a heated slope",
+    "sealed layers": "A layer of a sealed body keeps its own pressure as far as its cells let it: storage of hybrid and of implicit steps, with Skempton's share of the load; a heated slope",
     "settling": "Exchange within cells: its rate; sand that is drained under clay, whose border settles into the cells",
     "fronts": "Sharp fronts: heat behind an inlet, saturations beside a pressure, hydrate ahead of a heater",
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",

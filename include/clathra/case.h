@@ -75,11 +75,10 @@ typedef struct Case {
   double     error_exponent;     /* of its mean over the particles (292) */
   PetscInt   max_failures;       /* cuts in a row before the run is given up */
   /* hybrid and explicit */
-  double   cfl;          /* step as a share of the stable one */
-  bool     force_dt;     /* take a fixed step above the stable one all the same */
-  PetscInt passes;       /* of (413), beyond the first */
-  double   damping;      /* local damping */
-  double   mass_scaling; /* factor on inertia */
+  double cfl;          /* step as a share of the stable one */
+  bool   force_dt;     /* take a fixed step above the stable one all the same */
+  double damping;      /* local damping */
+  double mass_scaling; /* factor on inertia */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */

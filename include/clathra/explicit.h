@@ -9,7 +9,6 @@
 typedef struct {
   bool   drag_implicit; /* hybrid; explicit otherwise */
   bool   paper;         /* the bare form (P72): rates of pressure by the particle, not shared over nodes */
-  int    passes;        /* of (413), beyond the first */
   double damping;       /* local damping of the mixture's out-of-balance force, [0,1) */
   double mass_scaling;  /* factor on every inertia, >= 1 */
 } ExplicitOptions;

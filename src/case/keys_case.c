@@ -41,8 +41,6 @@ const char *const case_integrator[INTEGRATOR_COUNT + 1] = {
     [INTEGRATOR_AUTO]     = "auto",         /* the cheaper of sdirk2 and hybrid */
 };
 
-#define WITHOUT_PAPER (INTEGRATORS_EXPLICIT & ~INTEGRATOR_BIT(PAPER))
-
 const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
     REALS(Case, CL_DIM, "grid_lower", scene.lower, "m", "", NULL, "lower left corner of the background grid",
@@ -126,10 +124,6 @@ const Key case_key[] = {
     REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "step as a share of the stable one", BY(INTEGRATORS_EXPLICIT)),
     BOOLEAN(Case, "stepper_force_dt", force_dt, "no", "take a fixed step above the stable one all the same",
             BY(INTEGRATORS_EXPLICIT)),
-    INTEGERS(Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
-             "passes from lumped storage, which spreads pressure over three cells, to consistent storage (413); 3 do "
-             "most of it",
-             BY(WITHOUT_PAPER)),
     REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
          "share of the out-of-balance force that acts against motion, for quasi-static ends", BY(INTEGRATORS_EXPLICIT)),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
@@ -191,8 +185,6 @@ const Key stage_key[] = {
          BY(INTEGRATORS_EXPLICIT)),
     BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES, "take a fixed step above the stable one all the same",
             .kept = true, BY(INTEGRATORS_EXPLICIT)),
-    INTEGERS(CaseStage, 1, "stepper_storage_passes", c.passes, "[0,100]", CASES,
-             "passes from lumped to consistent storage", .kept = true, BY(WITHOUT_PAPER)),
     REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "local damping", .kept = true,
          BY(INTEGRATORS_EXPLICIT)),
     REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES, "factor on all inertia",

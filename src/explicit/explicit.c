@@ -81,6 +81,8 @@ static bool Needs(const Explicit *e, int k)
     return s.layers;
   if (k == T_WARM || k == T_WARM + 1)
     return e->m->c->compression_heat;
+  if (k == T_CONSISTENT)
+    return Corrects(e);
   if (k == T_V)
     return Scalars(s) > 0;
   if (k >= T_MISS)

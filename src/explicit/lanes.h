@@ -89,6 +89,11 @@ PLACE(B_Count, B_DVs(s) + CL_DIM * s.solid)
 PLACE(R_Matrix, Scalars(s))
 PLACE(R_Count, Scalars(s) * (Scalars(s) + 1))
 
+/* Between that and the third pass, to nodes (413): what their particles store of the increments of pressure by the
+   sums of all their nodes, and the matrix of the same by a node's own. */
+PLACE(Stored_Matrix, s.fluids)
+PLACE(Stored_Count, s.fluids *(s.fluids + 1))
+
 /* Third pass, from nodes: increments of the scalars, their end values (gradients), v_s; a dry body has its increment of
  * v_s here. */
 PLACE(C_End, Scalars(s))
@@ -102,17 +107,17 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                            /* [2] densities with which the fluids flow */
-  T_GAS     = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
-  T_HELD    = T_GAS + 2,            /* density of the gas in the pores (323) */
-  T_DRAG    = T_HELD + 1,           /* [2] mu/(k_a k_r) */
-  T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
-  T_V,                              /* volume at the end of the step */
-  T_EOS,                            /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
-  T_WARM =
-      T_SLOPE + 3 * PHASE_COUNT, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
-  T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p_w, p_g and T */
+  T_RHO,                                    /* [2] densities with which the fluids flow */
+  T_GAS     = T_RHO + PHASE_COUNT,          /* [2] slopes of that of the gas in p_g and T */
+  T_HELD    = T_GAS + 2,                    /* density of the gas in the pores (323) */
+  T_DRAG    = T_HELD + 1,                   /* [2] mu/(k_a k_r) */
+  T_CONDUCT = T_DRAG + PHASE_COUNT,         /* weight of its flow at t_n (350); with layers */
+  T_V,                                      /* volume at the end of the step */
+  T_EOS,                                    /* [2] masses at that volume and the old pressures */
+  T_SLOPE      = T_EOS + PHASE_COUNT,       /* [2][3] their slopes in p_w, p_g, T */
+  T_CONSISTENT = T_SLOPE + 3 * PHASE_COUNT, /* beta of (413) */
+  T_WARM       = T_CONSISTENT + 1, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN       = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p_w, p_g and T */
   T_GAIN_W,
   T_GAIN_G,
   T_GAIN_T,
@@ -151,12 +156,11 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;  /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
-                   fluids with layers the flow per permeability (311) */
-  double *gain; /* [rows][3] the same of the scalars */
-  double *left, *given, *total; /* (413): what the balances of mass and heat still lack and what particles store of it;
-                                   the increments so far, [rows][LANES] */
-  int       pass;               /* of (413), from 0 */
+  double *inc;    /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
+                     fluids with layers the flow per permeability (311) */
+  double   *gain; /* [rows][3] the same of the scalars */
+  double   *given, *first; /* [rows][LANES] (413): Stored_..., the increments without it */
+  bool      again;         /* (37) is solved for what (413) gives */
   double   *cell;  /* [rows][CELL_MEAN] of the cell behind a node: sums of PartMoment, m^3, last CELL_PRESSURE */
   CellMean *mean;  /* [rows] */
   double   *swell; /* [rows] mean stress through a cell's volume change, J, of this rank; from CellsMotion on
@@ -184,7 +188,7 @@ struct Explicit {
   double squeezed, beyond;      /* (290), (442), J over the step */
   double heat_in, warmed;       /* J over the step: what prescribed temperatures take, and all that warms the nodes */
   double ahead;                 /* of the end of the step, since ExplicitBegin, s */
-  double across;                /* of StableStep, s */
+  double across, stable;        /* of StableStep, s */
   Unseen unseen;
   double straight;         /* STRAIGHT p_0, the least of all materials, Pa */
   double work[WORK_RATES]; /* J over the step (92), this rank */
@@ -312,7 +316,7 @@ void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
 /* (440) at t_n; before Rates. */
 PetscErrorCode HeatAlternation(Explicit *e);
-void           Stored(Explicit *e); /* what the increments of a pass store, to Explicit.given */
+void           Stored(Explicit *e); /* (413), to Explicit.given */
 void           Update(Explicit *e, double dt);
 /* Calls the loop made for the set of the scene on every run of particles, or on the nodes of this rank. */
 typedef void (*Loop)(Explicit *e, Run r, double dt);
@@ -370,10 +374,23 @@ void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])
 PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
+/* Is storage consistent as far as the stable step has room for it (413)?  Not in the bare form, which is the paper's.
+ */
+INLINE bool Corrects(const Explicit *e)
+{
+  return e->set.fluids > 0 && !e->o.paper;
+}
+
 /* Do relative changes of p_g go through the nodes (151)? */
 INLINE bool Relative(const Explicit *e, Set s)
 {
   return s.fluids == 2 && e->m->relative_gas && !e->o.paper;
+}
+
+/* (151): the second of a row's columns for dp_w and dp_g, where the second is p_g, Pa. */
+INLINE double RelativeColumn(const double a[2], double p_g)
+{
+  return (a[0] + a[1]) * (p_g / PRESSURE_UNIT);
 }
 
 /* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */

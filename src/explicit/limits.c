@@ -1,5 +1,6 @@
 /* The largest stable step (38), (39), (150). */
 #include "lanes.h"
+#include "storage.h"
 
 const char *const cl_limit_word[LIMIT_COUNT] = {"none",
                                                 "waves in the mixture",
@@ -50,17 +51,6 @@ static double Sliver(const Explicit *e, PetscInt p)
   return k2;
 }
 
-/* (312): k_a over that without hydrate, where what (350) weighs with does not count hydrate. */
-static double Openness(Set s, const Material *mat, const PointProperties *q)
-{
-  double dphi, dSh;
-
-  if (!s.layers || !mat->reacts)
-    return 1.0;
-  return PermeabilityEvaluate(&mat->permeability, q->phi, q->Sh, &dphi, &dSh) /
-         PermeabilityEvaluate(&mat->permeability, q->phi, 0.0, &dphi, &dSh);
-}
-
 static double Widest(const Grid *g, const double x[CL_DIM])
 {
   double h = 0.0;
@@ -109,8 +99,8 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, double conductance, Sp
     const double drag = q.resist[i] / q.kr[i];
 
     total += share * q.rho[i];
-    w->fluid[i] = (1 + e->o.passes) * k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling); /* passes (413) */
-    w->drag[i]  = Openness(s, mat, &q) * drag * share / (q.rho[i] * e->o.mass_scaling);
+    w->fluid[i] = k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling);
+    w->drag[i]  = Openness(s, mat, q.phi, q.Sh) * drag * share / (q.rho[i] * e->o.mass_scaling);
     w->both[i]  = drag * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
     for (int j = 0; j < s.fluids; j++) {
       const double other = q.phi * (1.0 - q.Sh) * q.s[j];
@@ -132,29 +122,30 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, double conductance, Sp
 }
 
 /* Left side of (38); a step is stable while it is below 4. */
-static double Growth(const Spectrum *w, bool implicit, double dt)
+static double Growth(const Spectrum *w, const ExplicitOptions *o, double dt)
 {
-  double sum = dt * dt * w->wave;
+  double fluids = 0.0, drag = 0.0;
 
-  for (int i = 0; i < w->fluids; i++)
-    sum += implicit ? 2.0 * dt * dt * w->fluid[i] / (1.0 + dt * w->drag[i])
-                    : 2.0 * dt * dt * w->fluid[i] + 2.0 * dt * w->both[i];
-  return sum;
+  for (int i = 0; i < w->fluids; i++) {
+    fluids += FluidGrowth(dt, w->fluid[i], o->drag_implicit ? w->drag[i] : 0.0);
+    drag += o->drag_implicit ? 0.0 : 2.0 * dt * w->both[i];
+  }
+  return dt * dt * w->wave + drag + (o->paper ? 1.0 : 1.0 + ConsistentShare(fluids)) * fluids;
 }
 
 /* Largest step with Growth <= 4, by bisection of its logarithm. */
-static double Together(const Spectrum *w, bool implicit)
+static double Together(const Spectrum *w, const ExplicitOptions *o)
 {
   double lo = 1e-30, hi = 1e30;
 
-  if (Growth(w, implicit, hi) <= 4.0)
+  if (Growth(w, o, hi) <= 4.0)
     return INFINITY;
-  if (!(Growth(w, implicit, lo) <= 4.0)) /* waves of any speed */
+  if (!(Growth(w, o, lo) <= 4.0)) /* waves of any speed */
     return 0.0;
   while (hi > lo * (1.0 + 1e-9)) {
     const double mid = sqrt(lo * hi);
 
-    if (Growth(w, implicit, mid) > 4.0)
+    if (Growth(w, o, mid) > 4.0)
       hi = mid;
     else
       lo = mid;
@@ -202,7 +193,7 @@ PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit)
     if (SpectrumOf(e, p, conductance[p], &w) != CL_OK)
       continue; /* the step itself will say why */
     Each(&w, e->o.drag_implicit, bound);
-    Lower(&bound[LIMIT_COUNT], Together(&w, e->o.drag_implicit));
+    Lower(&bound[LIMIT_COUNT], Together(&w, &e->o));
     Lower(&bound[LIMIT_COUNT], 2.0 / sqrt(w.sliver));
     Lower(&bound[LIMIT_COUNT], 2.0 / w.heat);
     Lower(&bound[LIMIT_COUNT + 1], w.across);
@@ -212,6 +203,7 @@ PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit)
   limit->dt     = bound[LIMIT_COUNT];
   limit->across = bound[LIMIT_COUNT + 1];
   e->across     = limit->across;
+  e->stable     = limit->dt;
   limit->rules  = LIMIT_NONE;
   for (int k = LIMIT_NONE; k < LIMIT_COUNT; k++) {
     limit->each[k] = bound[k];

@@ -30,17 +30,16 @@ static PetscErrorCode Allocate(Explicit *e)
     PetscCall(PetscCalloc1(n * CL_DIM * ALTERNATION_COUNT, &e->alternates));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
-  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 3 * LANES : 0)) + LANES, &e->raw));
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (Corrects(e) ? 2 * LANES : 0)) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;
   e->G = e->A + n * A;
   e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  if (e->o.passes > 0) {
-    e->left  = at + n * (2 * A + B + R + C);
-    e->given = e->left + n * LANES;
-    e->total = e->given + n * LANES;
+  if (Corrects(e)) {
+    e->given = at + n * (2 * A + B + R + C);
+    e->first = e->given + n * LANES;
   }
   PetscCall(PetscCalloc7(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->lean, n, &e->torn, n, &e->node,
                          GridPaddedSize(&e->m->grid), &e->slot));

@@ -1,7 +1,9 @@
 /* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of
    pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "clathra/laws_batch.h"
-#include "gains.h"
+#include "clathra/point_reaction.h"
+#include "gathered.h"
+#include "storage.h"
 
 /* (313): with layers nodes give what the slip per permeability changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
@@ -467,6 +469,22 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
   }
 }
 
+/* What a kg of hydrate gained takes off every row: kg of the fluids, and with the sign of the heat that it gives, J. */
+INLINE void PerGain(const Explicit *e, const Set s, Run r, const double *restrict T, const double *restrict rho_h,
+                    double c[3][BLOCK])
+{
+  const Kinetics *k               = &r.mat->kinetics;
+  const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
+  double          held[PHASE_COUNT][BLOCK], L[BLOCK];
+
+  LatentHeatBatch(&r.mat->latent, r.n, T, L);
+  PerHydrateVolume(e, r, e->m->P.f[P_PW] + r.p, e->m->P.f[P_PG] + r.p, held);
+  for (int row = 0; row < Scalars(s); row++) {
+    for (int q = 0; q < r.n; q++)
+      c[row][q] = row < s.fluids ? nu[row] + Displaced(held[row][q], rho_h[q]) : -L[q];
+  }
+}
+
 /* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
@@ -500,8 +518,32 @@ INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
     for (int row = 0; row < n; row++) {
       double *a = &o->value[q][R_Matrix(s) + row * n];
 
-      a[1] = (a[0] + a[1]) * (p[q] / PRESSURE_UNIT);
+      a[1] = RelativeColumn(a, p[q]);
     }
+  }
+}
+
+/* beta of (413), with the slopes above. */
+INLINE void ConsistentShares(Explicit *e, const Set s, Run r, const Volumes *v)
+{
+  const double *sg = s.fluids == 2 ? e->t[T_SG] : NULL;
+
+  for (PetscInt p = r.p; p < r.p + r.n; p++) {
+    const double phi = v->phi[p - r.p], Sh = v->Sh[p - r.p],
+                 share[PHASE_COUNT] = {sg ? 1.0 - sg[p] : 1.0, sg ? sg[p] : 0.0};
+    const double open = Openness(s, r.mat, phi, Sh), ww = e->t[T_SLOPE][p], gg = sg ? e->t[T_SLOPE + 4][p] : 1.0;
+    const double det = sg ? ww * gg - e->t[T_SLOPE + 1][p] * e->t[T_SLOPE + 3][p] : ww;
+    double       f   = 0.0, x[CL_DIM];
+
+    ParticlePlace(&e->m->P, p, x);
+    for (int k = 0; k < s.fluids; k++) {
+      const double fill  = phi * (1.0 - Sh) * share[k] / e->o.mass_scaling;
+      const double decay = e->o.drag_implicit ? open * e->t[T_DRAG + k][p] * fill / e->t[T_RHO + k][p] : 0.0;
+
+      f += FluidGrowth(e->stable, GridHighest2At(&e->m->grid, x) * e->m->P.f[P_V][p] * fill * (k ? ww : gg) / det,
+                       decay);
+    }
+    e->t[T_CONSISTENT][p] = ConsistentShare(f);
   }
 }
 
@@ -566,6 +608,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Masses(e, s, r, PHASE_W, &v);
   if (s.fluids == 2)
     Masses(e, s, r, PHASE_G, &v);
+  if (Corrects(e))
+    ConsistentShares(e, s, r, &v);
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
   if (s.heat)

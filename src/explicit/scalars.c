@@ -27,7 +27,7 @@ INLINE void NodeScalars(Explicit *e, const Set s, PetscInt I)
   if (held) {
     for (int j = 0; j < n; j++)
       A[(n - 1) * n + j] = j == n - 1;
-    b[n - 1] = e->pass > 0 ? 0.0 : T - a[s.fluids] / a[A_C(s)];
+    b[n - 1] = e->again ? 0.0 : T - a[s.fluids] / a[A_C(s)];
   }
   SolveSmall(n, A, b, &e->gain[3 * I]);
   if (held && e->node[I].root == (int)I)
@@ -44,7 +44,7 @@ static void Join(Explicit *e, PetscInt I)
   const double *from = &e->R[I * width], *a = &e->A[I * LANES * Rows(A_Count(s))];
   double       *to = &e->R[e->node[I].root * width], T;
 
-  if (e->pass > 0) { /* the matrix has it */
+  if (e->again) { /* the matrix has it */
     AddRow(to, share, from, s.heat && Held(e, I, F_T, &T) ? s.fluids : n);
     return;
   }
@@ -70,7 +70,7 @@ INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
   for (int k = 0; k < n; k++)
     c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
-    c[s.fluids] = e->pass > 0 ? 0.0 : T - a[s.fluids] / a[A_C(s)];
+    c[s.fluids] = e->again ? 0.0 : T - a[s.fluids] / a[A_C(s)];
     e->heat_in += Lacking(s, r, s.fluids, c);
   }
 }
@@ -133,12 +133,10 @@ MAKE_LOOPS(ScalarsRun)
 MAKE_LOOPS(WriteRun)
 MAKE_LOOPS(EndsRun)
 
-/* Solves the rows as they stand for the increments of this pass, which the particles can read then.  The heat that
-   held temperatures take is that of all passes, since what their rows lacked is in the last one's, too. */
-static PetscErrorCode Pass(Explicit *e)
+/* Solves the rows as they stand for increments, which the particles can read then. */
+static PetscErrorCode Solve(Explicit *e)
 {
   PetscFunctionBeginUser;
-  e->heat_in = 0.0;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       Join(e, I);
@@ -149,72 +147,54 @@ static PetscErrorCode Pass(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the balances lack, n numbers a row, as they come from the particles. */
-static void KeepSides(Explicit *e)
-{
-  const int n = Scalars(e->set), width = LANES * Rows(R_Count(e->set));
-
-  for (PetscInt I = 0; I < e->rows; I++) {
-    for (int k = 0; k < n; k++)
-      e->left[I * LANES + k] = e->R[I * width + k];
-  }
-}
-
-/* (413): what they still lack after the increments of the last pass, to the rows. */
-static PetscErrorCode StillLacking(Explicit *e)
+/* (413): what lumped storage has given a node of its particles' part beyond their own, to the rows. */
+static PetscErrorCode LackOfMass(Explicit *e)
 {
   const Set s = e->set;
-  const int n = Scalars(s), width = LANES * Rows(R_Count(s)), wide = LANES * Rows(A_Count(s));
+  const int n = Scalars(s), width = LANES * Rows(R_Count(s));
 
   PetscFunctionBeginUser;
-  PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(e->set)));
+  PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(s)));
   PetscCall(PetscArrayzero(e->given, e->rows * LANES));
   Stored(e);
   PetscCall(NodeMapSum(&e->map, e->given, LANES));
   for (PetscInt I = 0; I < e->map.n_local; I++) {
-    double *left = &e->left[I * LANES];
+    const double *stored = &e->given[I * LANES], *d = &e->C[I * C_Width(s)];
+    double       *r = &e->R[I * width];
 
-    AddRow(left, -1.0, &e->given[I * LANES], n);
-    if (s.heat)
-      left[s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * C_Width(s) + s.fluids];
-    for (int k = 0; k < n; k++)
-      e->R[I * width + k] = left[k];
+    for (int k = 0; k < n; k++) {
+      r[k] = 0.0;
+      for (int j = 0; k < s.fluids && j < s.fluids; j++)
+        r[k] += stored[Stored_Matrix(s) + k * s.fluids + j] * d[j];
+      r[k] -= k < s.fluids ? stored[k] : 0.0;
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The increments of this pass to those so far. */
-static void AddIncrements(Explicit *e)
+static PetscErrorCode Correct(Explicit *e)
 {
-  for (PetscInt I = 0; I < e->rows; I++)
-    AddRow(&e->total[I * LANES], 1.0, &e->C[I * C_Width(e->set)], Scalars(e->set));
-}
+  const int n = Scalars(e->set), width = C_Width(e->set);
 
-static PetscErrorCode FurtherPasses(Explicit *e)
-{
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(e->total, e->rows * LANES));
-  AddIncrements(e);
-  for (e->pass = 1; e->pass <= e->o.passes; e->pass++) {
-    PetscCall(StillLacking(e));
-    PetscCall(Pass(e));
-    AddIncrements(e);
-  }
   for (PetscInt I = 0; I < e->rows; I++)
-    PetscCall(PetscArraycpy(&e->C[I * C_Width(e->set)], &e->total[I * LANES], Scalars(e->set)));
-  e->pass = 0;
+    PetscCall(PetscArraycpy(&e->first[I * LANES], &e->C[I * width], n));
+  PetscCall(LackOfMass(e));
+  e->again = true;
+  PetscCall(Solve(e));
+  e->again = false;
+  for (PetscInt I = 0; I < e->rows; I++)
+    AddRow(&e->C[I * width], 1.0, &e->first[I * LANES], n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
   PetscFunctionBeginUser;
-  e->warmed = 0.0;
-  if (e->o.passes > 0)
-    KeepSides(e);
-  PetscCall(Pass(e));
-  if (e->o.passes > 0)
-    PetscCall(FurtherPasses(e));
+  e->warmed = e->heat_in = 0.0;
+  PetscCall(Solve(e));
+  if (Corrects(e))
+    PetscCall(Correct(e));
   ForNodes(e, EndsRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(e->set)));
   rates->heat_in += e->heat_in;

@@ -13,7 +13,6 @@ static PetscErrorCode Create(Stepper *s)
   const Case           *c = StepperCase(s);
   const ExplicitOptions o = {.drag_implicit = c->integrator != INTEGRATOR_EXPLICIT,
                              .paper         = c->integrator == INTEGRATOR_PAPER,
-                             .passes        = (int)c->passes,
                              .damping       = c->damping,
                              .mass_scaling  = c->mass_scaling};
 

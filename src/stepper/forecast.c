@@ -119,9 +119,8 @@ double StepperImplicitWork(const Model *m, double newton, double factors)
 
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
 {
-  const ExplicitOptions o = {
-      .drag_implicit = true, .passes = (int)StepperCase(s)->passes, .mass_scaling = StepperCase(s)->mass_scaling};
-  Explicit *e;
+  const ExplicitOptions o = {.drag_implicit = true, .mass_scaling = StepperCase(s)->mass_scaling};
+  Explicit             *e;
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &e));

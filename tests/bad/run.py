@@ -252,7 +252,6 @@ CASES = [
     ("cfl above 1", [("type: sdirk2", "type: hybrid, cfl: 1.5")], ["stepper_cfl", "(0,1]"], []),
     ("damping of 1", [("type: sdirk2", "type: hybrid, damping: 1")], ["stepper_damping", "[0,1)"], []),
     ("mass scaling below 1", [("type: sdirk2", "type: explicit, mass_scaling: 0.5")], ["stepper_mass_scaling", "[1,1e12]"], []),
-    ("passes below 0", [("type: sdirk2", "type: hybrid, storage_passes: -1")], ["stepper_storage_passes", "[0,100]"], []),
     ("hybrid about an axis", [("basis: cpgimp", "basis: cpgimp\ngeometry: axisymmetric"), ("type: sdirk2", "type: hybrid")], ["hybrid does not know geometry: axisymmetric"], []),
     ("steps out of order", [("dt: 1 s,", "dt: 100 s,")], ["stepper_dt", "stepper_dt_max"], []),
     ("output after the end", [("1500 s, 2000 s]", "1500 s, 2001 s]")], ["output_times", "time_end"], []),

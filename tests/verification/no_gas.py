@@ -178,7 +178,6 @@ def drained():
     for name, bar, options in (("sdirk2", 1e-7, alike), ("euler", 1e-7, ("-stepper_type", "euler", *alike)), ("about an axis", 1e-7, ("-geometry", "axisymmetric", *alike)),
                                ("a border across cells", 1e-7, (*border, *alike)), ("sdirk2 with inertia", 1e-7, (*blow, *alike)),
                                ("hybrid", 1e-5, hybrid), ("hybrid, sheared by 0.2 off the grid's lines", 1e-5, (*hybrid, *shears)),
-                               ("hybrid, so sheared, 3 storage passes", 1e-5, (*hybrid, *shears, "-stepper_storage_passes", "3")),
                                ("permeabilities that differ", 0.01, ()), ("... a border across cells", 0.01, border)):  # fmt: skip
         (_, first), *_, (_, last) = Run.of_case(CASES / "no_gas_drained.yaml", *options).snapshots()
         off = np.max(np.abs(last["p_g"] / np.mean(first["p_g"]) - 1))

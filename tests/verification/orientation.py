@@ -112,6 +112,5 @@ if __name__ == "__main__":
     turned()
     turned("layers, ", True)
     turned("layers, hybrid, ", True, QUICK)
-    turned("layers, hybrid, 3 storage passes, ", True, [*QUICK, "-stepper_storage_passes", "3"])
     shifted()
     finish()

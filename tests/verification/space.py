@@ -283,9 +283,9 @@ def without_matrix():
     compare("block, hybrid", quick, rings=every)
     for ranks in (2, 4):
         compare("block, hybrid", hurried(block(), end="0.004 s"), ranks=ranks)
-    compare("block, hybrid, half the cell's mean strain, heat carried, beds, heat of compression, consistent storage", quick, "-mean_strain", 0.5,
+    compare("block, hybrid, half the cell's mean strain, heat carried, beds, heat of compression", quick, "-mean_strain", 0.5,
             "-mat_sediment_permeability_ratio", 0.1, "-mat_sediment_permeability_dip", "20 deg",
-            "-compression_heat", "yes", "-stepper_storage_passes", 3)  # fmt: skip
+            "-compression_heat", "yes")  # fmt: skip
     within = json.loads(json.dumps(quick))  # no surface on a line of the grid, where round-off would decide whether a node has a sliver
     for r in within["region"].values():
         r["upper"][1], r["particles_per_cell"] = "0.45 m", [4, 2]
@@ -371,7 +371,7 @@ def turned(hybrid=False):
     case |= {"time": {"end": "100 s"}, "output": {"times": ["100 s"]}}
     runs, options = [], []
     if hybrid:
-        case, options = hurried(case), ["-mean_strain", 0.5, "-compression_heat", "yes", "-stepper_storage_passes", 3]
+        case, options = hurried(case), ["-mean_strain", 0.5, "-compression_heat", "yes"]
         options += [o for m in ("sediment", "clay") for o in (f"-mat_{m}_kinetics_active", "no")]  # T bends within a particle then (395)
     for ring in (0, 1, 2):
         c, along = drawn_out(case, ring)
