@@ -132,7 +132,7 @@ def page(binary):
 # title; its curve; what the picture varies (label, keys of the material); equations; keys (without mat_<name>_); source
 LAWS = [
     ("Retention", "retention", [("van_genuchten", "retention_law van_genuchten"), ("van_genuchten, twice p0", "retention_p0 40000"), ("brooks_corey", "retention_law brooks_corey retention_lambda 1")],
-     (223, 224, 320), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
+     (223, 224, 320, 321, 322), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
     ("Relative permeability", "relative_permeability", [("n = 4, 2", "relperm_nw 4 relperm_ng 2"), ("n = 2, 2", "relperm_nw 2 relperm_ng 2")],
      (225,), r"relperm_\w+", "Corey (1954)"),
     ("Permeability and hydrate", "permeability_hydrate", [("power, mh = 3", "permeability_mh 3"), ("power, mh = 8", "permeability_mh 8"), ("masuda_ramp", "permeability_hydrate_law masuda_ramp permeability_kh 0.1 permeability_Shc 0.5")],
@@ -164,6 +164,9 @@ FORMULAS = {
     222: "rho = M p/(R T_K)   `ideal` gas (P11)",
     223: "s_g = S_gr exp(p_-/p_trap) + (1 - S_wr - S_gr)(1 - [1 + (p_+/p_0)^(1/(1-m))]^-m),   p_+- = +-p_s ln(1 + exp(+-p_c/p_s))   van Genuchten, smooth (P4), (P6)",
     224: "s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) above p_c = p_0   Brooks and Corey",
+    320: "s_g = law[(1 - S_h)^n p_c],   that is p_c = p_c,law(s_g)/(1 - S_h)^n;   ds_g/dS_h = - n p_c/(1 - S_h) ds_g/dp_c,   n = `hydrate_exponent`",
+    321: "S_h rho_h V_p = m_h(s_g(p_c, S_h), q),   dS_h = [d(m_h/(rho_h V_p))/dq at fixed S_h] dq/(1 - d(m_h/(rho_h V_p))/dS_h),   q = (J, p_w, p_g, T)",
+    322: "-dm/dV_h = c - (1 - S_h) dc/ds_g ds_g/dS_h = c + n p_c ds_g/dp_c dc/ds_g",
     225: "k_r = b^n,   b = (s - s_r)/(1 - S_wr - S_gr) in [0, 1]   Corey (P42)",
     226: "k_a = k_0 f_phi(phi) f_Sh(S_h)   (P38)",
     227: "f_phi = (phi/phi_0)^1.5 [(1 - phi_0)/(1 - phi)]^3   `kozeny_carman` (P39)",
@@ -180,6 +183,10 @@ FORMULAS = {
     130: "L = L(T_ref) + [(N_h M_w c_w + M_g c_g)/M_h - c_h] (T - T_ref),   L(T_ref) by (235)   `kirchhoff`",
     236: "X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)]   of a mixture (P29)",
     237: "E = E_0 + a_h E_h S_h^b_h   (P46)",
+    61: "c_p = c_min + (c_max - c_min) exp[eta_h (S_h - S_h,max)],   likewise psi_p;   phi_p constant",
+    62: "c = c_res + (c_p - c_res) exp(-eta_s eps),   phi = phi_res + (phi_p - phi_res) exp(-eta_s eps),   psi = psi_p exp(-eta_s eps)",
+    455: "c(z) = c + (c/c_max) k max(0, z_0 - z),   c = c_max, c_min, c_res,   k = `cohesion_gradient`",
+    87: "c/F,   tan(phi)/F,   tan(psi)/F,   T/F,   F = `strength_factor`,   T = `tension_cutoff`",
     120: """Z^3 - (1 - B) Z^2 + (A - 3 B^2 - 2 B) Z - (A B - B^2 - B^3) = F(Z) = 0,   rho_g = M p_g/(Z R T_K)   `peng_robinson`
 A = a p/(R T_K)^2,   a = 0.45723553 (R T_c)^2/p_c [1 + k (1 - sqrt(T_K/T_c))]^2,   k = 0.37464 + 1.54226 w - 0.26992 w^2,   w the acentric factor
 B = b p/(R T_K),   b = 0.07779607 R T_c/p_c""",
@@ -195,7 +202,8 @@ X = 3.448 + 986.4/t + 0.01009 M,   Y = 2.447 - 0.2224 X""",
 }  # fmt: skip
 
 NOTES = {  # what belongs to the formulas of a law, by its curve
-    "retention": "Below p_c = 0, where the printed law ends, (223) compresses trapped gas, so that p_c and s_g follow from each other.",
+    "retention": "Below p_c = 0, where the printed law ends, (223) compresses trapped gas, so that p_c and s_g follow from each other. Hydrate that narrows the pores raises p_c: Leverett's p_c ~ sqrt(phi/k) with (229) is "
+    "n = (m_h - 1)/2. In implicit steps s_g and S_h are solved together in the particle (321); `hybrid` has the hydrate of t_n. A unit volume of hydrate displaces (322) of a fluid with content c.",
     "equilibrium": "(125) is the form of an ideal solution through the 1.1 K measured in sea water.",
     "latent_heat": "With (130) the heat that hydrate stores does not depend on the path; with (235) a closed cell loses or gains the difference of the slopes.",
     "gas_density": "The largest root Z is the gas. A region must start above T_c. Methane is within 3 % of Setzmann and Wagner (1991) from 3 to 15 MPa, 2 to 27 degC.",
