@@ -2,8 +2,8 @@
 """Makes docs/options.md and docs/laws.md of this program: options_doc.py CLATHRA [--check | --pictures]
 
 The keys of a case come from `CLATHRA -case_keys`; the options of the program itself are kept by hand below, and tests/docs.py holds them against what src/ reads.
-Formulas and numbers of the laws come from docs/equations.md, files from the comments that cite the numbers, and the curves from `CLATHRA CASE -case_curves`: nothing is
-computed here but K_d of published pairs.  --check writes nothing and fails when a page is out of date; --pictures draws the laws, too.
+Formulas of the laws stand in FORMULAS below or, where the balances use them, in docs/equations.md; files come from the comments that cite their numbers, and the curves from
+`CLATHRA CASE -case_curves`: nothing is computed here but K_d of published pairs.  --check writes nothing and fails when a page is out of date; --pictures draws the laws, too.
 """
 import difflib
 import functools
@@ -132,7 +132,7 @@ def page(binary):
 # title; its curve; what the picture varies (label, keys of the material); equations; keys (without mat_<name>_); source
 LAWS = [
     ("Retention", "retention", [("van_genuchten", "retention_law van_genuchten"), ("van_genuchten, twice p0", "retention_p0 40000"), ("brooks_corey", "retention_law brooks_corey retention_lambda 1")],
-     (223, 224, 320), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
+     (223, 224, 320, 321, 322), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
     ("Relative permeability", "relative_permeability", [("n = 4, 2", "relperm_nw 4 relperm_ng 2"), ("n = 2, 2", "relperm_nw 2 relperm_ng 2")],
      (225,), r"relperm_\w+", "Corey (1954)"),
     ("Permeability and hydrate", "permeability_hydrate", [("power, mh = 3", "permeability_mh 3"), ("power, mh = 8", "permeability_mh 8"), ("masuda_ramp", "permeability_hydrate_law masuda_ramp permeability_kh 0.1 permeability_Shc 0.5")],
@@ -146,7 +146,7 @@ LAWS = [
      (11, 12, 13, 371, 233), r"kinetics_(active|K0|dE)|hydrate_(number|molar_mass)|water_molar_mass", "Kim, Bishnoi, Heidemann and Rizvi (1987)"),
     ("Surface on which hydrate forms", "formation_surface", [("", "")], (234, 418), r"porosity|kinetics_A_geo", "the paper; (418) ours, where water holds methane"),
     ("Heat of dissociation", "latent_heat", [("linear", "latent_heat_law linear"), ("kirchhoff", "latent_heat_law kirchhoff")], (235, 130), r"latent_heat_\w+", "the paper; Kirchhoff (1858)"),
-    ("Density of gas", "gas_density", [("peng_robinson", "gas_eos peng_robinson"), ("ideal", "gas_eos ideal")], (222, 120), r"gas_(molar_mass|eos|critical_\w+|acentric_factor)", "Peng and Robinson (1976)"),
+    ("Density of gas", "gas_density", [("peng_robinson", "gas_eos peng_robinson"), ("ideal", "gas_eos ideal")], (222, 120, 121), r"gas_(molar_mass|eos|critical_\w+|acentric_factor)", "Peng and Robinson (1976)"),
     ("Density of water, grains and hydrate", "water_density", [("expansion 0", "water_expansion 0"), ("expansion 2e-4 1/K", "water_expansion 2e-4"), ("salinity 0.035", "water_expansion 0 water_salinity 0.035")],
      (221, 126), r"(solid|hydrate|water)_(density|expansion|bulk_modulus|ref_\w+|salinity)", "the paper; Sharqawy, Lienhard and Zubair (2010)"),
     ("Viscosities", "viscosity", [("constant", "water_viscosity_law constant gas_viscosity_law constant"), ("kestin, lee", "water_viscosity_law kestin gas_viscosity_law lee")],
@@ -157,6 +157,58 @@ LAWS = [
     ("Strength and hydrate", "strength", [("eta_h = 5", "plasticity_eta_h 5"), ("eta_h = 1", "plasticity_eta_h 1")], (61, 63, 455), r"plasticity_(law|cohesion_(m\w+|gradient|level)|dilation_\w+|eta_h|Sh_max|tension_cutoff|flow|eccentricity)", "the paper"),
     ("Softening", "softening", [("eta_s = 5", "plasticity_eta_s 5"), ("eta_s = 20", "plasticity_eta_s 20")], (62, 85, 87), r"plasticity_(cohesion_residual|friction_\w+|eta_s|softening_length|nonlocal_length|heat)|strength_factor", "the paper; Galavi and Schweiger (2010)"),
 ]  # fmt: skip
+
+# Formulas that only docs/laws.md has; the number stands behind the first line
+FORMULAS = {
+    221: "rho = rho_0 exp[(p - p_ref)/K - beta (T - T_ref)]   liquid, solid, hydrate (P10)",
+    222: "rho = M p/(R T_K)   `ideal` gas (P11)",
+    223: "s_g = S_gr exp(p_-/p_trap) + (1 - S_wr - S_gr)(1 - [1 + (p_+/p_0)^(1/(1-m))]^-m),   p_+- = +-p_s ln(1 + exp(+-p_c/p_s))   van Genuchten, smooth (P4), (P6)",
+    224: "s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) above p_c = p_0   Brooks and Corey",
+    320: "s_g = law[(1 - S_h)^n p_c],   that is p_c = p_c,law(s_g)/(1 - S_h)^n;   ds_g/dS_h = - n p_c/(1 - S_h) ds_g/dp_c,   n = `hydrate_exponent`",
+    321: "S_h rho_h V_p = m_h(s_g(p_c, S_h), q),   dS_h = [d(m_h/(rho_h V_p))/dq at fixed S_h] dq/(1 - d(m_h/(rho_h V_p))/dS_h),   q = (J, p_w, p_g, T)",
+    322: "-dm/dV_h = c - (1 - S_h) dc/ds_g ds_g/dS_h = c + n p_c ds_g/dp_c dc/ds_g",
+    225: "k_r = b^n,   b = (s - s_r)/(1 - S_wr - S_gr) in [0, 1]   Corey (P42)",
+    226: "k_a = k_0 f_phi(phi) f_Sh(S_h)   (P38)",
+    227: "f_phi = (phi/phi_0)^1.5 [(1 - phi_0)/(1 - phi)]^3   `kozeny_carman` (P39)",
+    228: "f_phi = [(1 - phi_0)/(1 - phi)]^2   `square_jacobian`",
+    229: "f_Sh = (1 - S_h)^mh   `power` (P41)",
+    230: "f_Sh = k_h + (1 - k_h)(S_hc - S_h)/S_hc below S_hc, k_h above   `masuda_ramp` (P40)",
+    231: "p_e = A_1 exp(A_2 - A_3/T_K)   `sloan` (P37)",
+    232: "ln p_e = sum_i a_i T^i   `moridis`: over water, over ice, joined where they cross",
+    122: "p_e = exp(14.717 - 1886.79/T_K), exp(38.980 - 8533.80/T_K) kPa   `kamath`: over ice, over water, joined so",
+    123: "p_e = 1.15 exp(49.3185 - 9459/T_K) Pa   `masuda`",
+    233: "K_d = K_0 exp(-dE/(R T_K))   (P35)",
+    234: "A_s = A_geo s_w s_g (1 - S_h)^3   of formation (P36)",
+    235: "L = C_0 - C_1 T_K, J per kg of hydrate   (P30)",
+    130: "L = L(T_ref) + [(N_h M_w c_w + M_g c_g)/M_h - c_h] (T - T_ref),   L(T_ref) by (235)   `kirchhoff`",
+    236: "X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)]   of a mixture (P29)",
+    237: "E = E_0 + a_h E_h S_h^b_h   (P46)",
+    61: "c_p = c_min + (c_max - c_min) exp[eta_h (S_h - S_h,max)],   likewise psi_p;   phi_p constant",
+    62: "c = c_res + (c_p - c_res) exp(-eta_s eps),   phi = phi_res + (phi_p - phi_res) exp(-eta_s eps),   psi = psi_p exp(-eta_s eps)",
+    455: "c(z) = c + (c/c_max) k max(0, z_0 - z),   c = c_max, c_min, c_res,   k = `cohesion_gradient`",
+    87: "c/F,   tan(phi)/F,   tan(psi)/F,   T/F,   F = `strength_factor`,   T = `tension_cutoff`",
+    120: """Z^3 - (1 - B) Z^2 + (A - 3 B^2 - 2 B) Z - (A B - B^2 - B^3) = F(Z) = 0,   rho_g = M p_g/(Z R T_K)   `peng_robinson`
+A = a p/(R T_K)^2,   a = 0.45723553 (R T_c)^2/p_c [1 + k (1 - sqrt(T_K/T_c))]^2,   k = 0.37464 + 1.54226 w - 0.26992 w^2,   w the acentric factor
+B = b p/(R T_K),   b = 0.07779607 R T_c/p_c""",
+    121: "dZ = - (F_A dA + F_B dB)/F_Z,   F_A = Z - B,   F_B = Z^2 - (6 B + 2) Z - A + 2 B + 3 B^2",
+    125: """p_e = p_e,fresh(T + dT_s),   dT_s = 1.1 K ln(1 - x)/ln(1 - x(0.0335)),   x = (S/M_s)/(S/M_s + (1 - S)/M_w),   M_s = 0.05844 kg/mol
+S = `salinity`, kg of salt per kg of pore water""",
+    126: "rho_0 = fresh density + S [802.0 - 2.001 T + 1.677e-2 T^2 - 3.06e-5 T^3 - 1.613e-5 S T^2],   T = T_ref in degC,   S = `salinity`",
+    127: "T_m = -0.0575 s + 1.710523e-3 s^1.5 - 2.154996e-4 s^2 - 7.53e-4 (p_w - 101325 Pa)/(10^4 Pa),   s = 1000 `salinity`",
+    128: """log10(mu_w/1.002e-3) = (20 - T)/(T + 96) [1.2364 - 1.37e-3 (20 - T) + 5.7e-6 (20 - T)^2],   mu_w *= 1 + S (A + B S)   `kestin`
+A = 1.541 + 1.998e-2 T - 9.52e-5 T^2,   B = 7.974 - 7.561e-2 T + 4.724e-4 T^2,   S = `salinity`""",
+    129: """mu_g = 1e-7 K exp[X (rho_g/1000)^Y],   K = (9.379 + 0.01607 M) t^1.5/(209.2 + 19.26 M + t),   t = 1.8 T_K,   M in g/mol   `lee`
+X = 3.448 + 986.4/t + 0.01009 M,   Y = 2.447 - 0.2224 X""",
+}  # fmt: skip
+
+NOTES = {  # what belongs to the formulas of a law, by its curve
+    "retention": "Below p_c = 0, where the printed law ends, (223) compresses trapped gas, so that p_c and s_g follow from each other. Hydrate that narrows the pores raises p_c: Leverett's p_c ~ sqrt(phi/k) with (229) is "
+    "n = (m_h - 1)/2. In implicit steps s_g and S_h are solved together in the particle (321); `hybrid` has the hydrate of t_n. A unit volume of hydrate displaces (322) of a fluid with content c.",
+    "equilibrium": "(125) is the form of an ideal solution through the 1.1 K measured in sea water.",
+    "latent_heat": "With (130) the heat that hydrate stores does not depend on the path; with (235) a closed cell loses or gains the difference of the slopes.",
+    "gas_density": "The largest root Z is the gas. A region must start above T_c. Methane is within 3 % of Setzmann and Wagner (1991) from 3 to 15 MPa, 2 to 27 degC.",
+    "viscosity": "mu_w does not depend on pressure; its salt is that of Sharqawy, Lienhard and Zubair (2010).",
+}  # fmt: skip
 
 SYMBOLS = [  # as formulas write it; what it is; SI unit
     ("p_w, p_g, p", "pressure of water, of gas, their mean s_w p_w + s_g p_g", "Pa"), ("p_c", "capillary pressure p_g - p_w; in (120) the critical one", "Pa"),
@@ -176,8 +228,10 @@ def keys(binary):
 
 
 def formulas():
-    """{number: line of docs/equations.md}"""
-    return {int(n): line.strip() for line, n in re.findall(r"^ {4}(.*)\((\d+)\) *$", EQUATIONS.read_text(), re.M)}
+    """{number: lines with the number behind the first}, of docs/equations.md and FORMULAS"""
+    theirs = {int(n): f"    {line.strip()} ({n})" for line, n in re.findall(r"^ {4}(.*)\((\d+)\) *$", EQUATIONS.read_text(), re.M)}
+    own = {n: "\n".join(f"    {line} ({n})" if k == 0 else f"    {line}" for k, line in enumerate(text.splitlines())) for n, text in FORMULAS.items()}
+    return theirs | own
 
 
 @functools.cache
@@ -221,14 +275,14 @@ def published_pairs():
 def laws_page(binary):
     table, text = keys(binary), formulas()
     out = ["# Laws", "", "<!-- made by scripts/options_doc.py -->", "",
-           "Every constitutive relation: its formula with its number in [equations.md](equations.md), the curve as the program evaluates it (`clathra CASE -case_curves` prints them for any case), "
+           "Every constitutive relation: its formula, numbered with those of [equations.md](equations.md), the curve as the program evaluates it (`clathra CASE -case_curves` prints them for any case), "
            "its keys below `mat_<name>_` (meaning, range and default: [options.md](options.md#keys-of-a-case)), source and code. The pictures have the parameters of [laws.yaml](laws.yaml) but for what they vary.", "",
            "## Symbols", "", "| symbol | what it is | SI unit |", "|---|---|---|"]  # fmt: skip
     out += [f"| {s} | {what} | {unit} |" for s, what, unit in SYMBOLS]
     for title, curve, _, numbers, pattern, source in LAWS:
         own = ", ".join(f"`{k[0]}`" + (f" ({', '.join(words)})" if (words := key_note(k)) else "") for k in table if re.fullmatch(pattern, k[0]))
         where = sorted({f for n in numbers for f in files(n)})
-        out += ["", f"## {title}", "", *(f"    {text[n]} ({n})" for n in numbers), "", f"![{title}](figures/law_{curve}.png)", "", f"Keys: {own}.", "",
+        out += ["", f"## {title}", "", *(text[n] for n in numbers), "", *([NOTES[curve], ""] if curve in NOTES else []), f"![{title}](figures/law_{curve}.png)", "", f"Keys: {own}.", "",
                 *(published_pairs() if curve == "rate_constant" else []), f"Source: {source}. Code: {', '.join(f'`{f}`' for f in where)}."]  # fmt: skip
     return "\n".join([*out, ""])
 

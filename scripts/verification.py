@@ -64,7 +64,7 @@ SECTION = {  # beside that table
     "plates": "Rigid plates that move with the body: confined compression, forces, rough and loose plates, a footing",
     "geostatic": "Initial states in balance with gravity: nothing moves when the run starts (docs/equations.md, section 13)",
     "scenes": "cases/shear_box and cases/sea_floor on coarse grids: motion under any pressure; a falling sea against consolidation in one dimension",
-    "narrow": "Capillary pressure that grows with hydrate (docs/equations.md, (320))",
+    "narrow": "Capillary pressure that grows with hydrate (docs/laws.md, (320))",
     "gas": "Sediment without gas: gas that appears, vanishes, is let in (docs/equations.md, section 19); gas that is stretched (section 12)",
     "fluids": "Fluids: real methane, equilibrium in salt water, viscosities, ice, heat of reaction, thermal strain and pressurisation, heat of compression",
     "layers": "Layers of sand and clay: flow along and across them, a well in one",

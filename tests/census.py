@@ -54,8 +54,8 @@ CEILINGS = {
     f"functions with {MANY} parameters or more": 21,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
-    "words of docs and README": 39830,
-    "words of the equations": 11918,
+    "words of docs and README": 38058,
+    "words of the equations": 9798,
     "files in scripts": 13,
 }
 

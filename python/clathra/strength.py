@@ -1,6 +1,6 @@
 """Factor of safety of a case by strength reduction.
 
-Runs the case with strength divided by a factor (`strength_factor`, docs/equations.md (87)) and bisects to the largest one it bears.
+Runs the case with strength divided by a factor (`strength_factor`, docs/laws.md (87)) and bisects to the largest one it bears.
 
 Whether the body stands is read from what keeps moving in the last fifth of the run, or of its last stage.  Energies are taken as shares of
 what the body has taken up: elastic and kinetic energy, and the plastic work since the stage began.
