@@ -266,7 +266,7 @@ def hybrid(binary, kind, n, bursts, ranks=1):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "case.yaml"
         path.write_text(case_text(kind, n))
-        text = measured(binary, path, ("-stepper_max_steps", bursts), ranks)[1]
+        text = measured(binary, path, ("-stepper_max_steps", 256 * bursts), ranks)[1]
     found = {name: log[1] for name, log in events(text).items() if name.startswith("ClEx")}
     return text, found, 4e-6 * n * n * counts(text)[0] / sum(found.values())
 

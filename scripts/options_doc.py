@@ -31,7 +31,7 @@ PROGRAM = [  # option, value, default, meaning
     ("-time_limit", "s", "none", "wall time before which the run ends, with a checkpoint and exit code 4"),
     ("-checkpoint_wall", "s", "300", "wall time between checkpoints, beside those of `checkpoint_every`; 0 = none"),
     ("-overwrite", "", "", "write into an output folder that holds the results of another case"),
-    ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
+    ("-stepper_max_steps", "N", "no limit", "stop after N more steps (those without a matrix at the end of up to 256), with a checkpoint and exit code 0"),
     ("-newton_tol_residual", "x", "1e-9", "bound of every scaled row of the residual; rows of mass and energy 20 times lower"),
     ("-newton_tol_update", "x", "1e-6", "bound of every scaled update, in units of 1 MPa and 1 K"),
     ("-newton_keep_jacobian", "x", "0.01", "the Jacobian is kept where an iteration reduces the residual to less than x of it (343); 0: always a new one"),

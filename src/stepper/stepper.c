@@ -119,8 +119,10 @@ static PetscErrorCode Change(Stepper *s, bool *ok)
 PetscErrorCode StepperRun(Stepper *s, bool *ok)
 {
   PetscFunctionBeginUser;
+  const PetscInt first = s->state.step;
+
   *ok = true;
-  for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && !StepperDone(s); n++) {
+  while (*ok && !s->stop && !s->broken && s->state.step - first < s->max_steps && !StepperDone(s)) {
     if (StepperStageDone(s))
       PetscCall(Change(s, ok));
     if (*ok) {

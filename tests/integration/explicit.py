@@ -57,7 +57,7 @@ for kind, (step, end, cells) in TYPES.items():
 
 for ranks in (1, 2):
     straight, out = run("hybrid", ranks=ranks), scratch() / "cut"
-    half = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_max_steps", "5", ranks=ranks, out=out)
+    half = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_max_steps", straight.steps(4), ranks=ranks, out=out)
     check_true("first part ends", half.returncode == 0)
     cut = run("hybrid", "-restart", out / "checkpoint.h5", ranks=ranks, out=out)
     same = all(np.array_equal(straight.probes[c], cut.probes[c]) for c in straight.probes)

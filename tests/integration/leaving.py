@@ -72,7 +72,7 @@ for kind, many_ranks in (("sdirk2", (2,)), ("hybrid", (2, 4))):
             check(f"{kind}, {ranks} ranks against 1: removed {what}", abs(many.balance[f"removed_{what}"][-1] / one.balance[f"removed_{what}"][-1] - 1), 1e-9)
     for ranks in (1, many_ranks[-1])[: 1 + (kind == "hybrid")]:
         straight, cut = thrown(kind, "-checkpoint_every", "0.4 s", ranks=ranks), scratch() / "cut"
-        half = thrown(kind, "-checkpoint_every", "0.4 s", "-stepper_max_steps", "45" if kind == "sdirk2" else "4", ranks=ranks, out=cut)
+        half = thrown(kind, "-checkpoint_every", "0.4 s", "-stepper_max_steps", straight.steps(44 if kind == "sdirk2" else 3), ranks=ranks, out=cut)
         then, left = half.balance["time_s"][-1], half.balance["removed_particles"][-1]
         again = thrown(kind, "-checkpoint_every", "0.4 s", "-restart", cut / "checkpoint.h5", ranks=ranks, out=cut)
         check(f"{kind}, {ranks} rank(s): time of the restart (s), after {left:.0f} have left", then if left else 0.0, (0.4, 0.49))

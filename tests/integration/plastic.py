@@ -16,7 +16,7 @@ KINDS = {
     "sdirk2": ("-newton_tol_residual", "1e-11", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-10"),
     "hybrid": ("-stepper_type", "hybrid", "-stepper_adapt", "yes"),
 }
-CUT = {"sdirk2": "11", "hybrid": "1"}  # steps, bursts of 256 steps
+CUT = {"sdirk2": 11, "hybrid": 256}  # steps
 NONLOCAL = ("-mat_soil_plasticity_nonlocal_length", "0.6 m", "-mat_soil_plasticity_eta_s", "50")
 
 

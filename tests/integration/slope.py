@@ -150,8 +150,8 @@ for what in ("water", "methane"):
     check(f"{what} kept, of the mass at the start", np.max(np.abs(one.balance[f"{what}_error"])), 1e-12)
 
 cut = scratch() / "cut"
-slope("-stepper_max_steps", "8", "-checkpoint_every", "0.5 s", out=cut)  # bursts; the slide begins at 3 s
-begun = slope("-restart", cut / "checkpoint.h5", "-stepper_max_steps", "40", out=cut).balance["time_s"][-1]
+slope("-stepper_max_steps", one.steps(7), "-checkpoint_every", "0.5 s", out=cut)  # the slide begins at 3 s
+begun = slope("-restart", cut / "checkpoint.h5", "-stepper_max_steps", one.steps(47) - one.steps(7), out=cut).balance["time_s"][-1]
 check("time of the restart, in the slide (s)", begun, (4.0, 6.5))
 again = slope("-restart", cut / "checkpoint.h5", out=cut).snapshots()[-1][1]
 check_true("a restart in the slide, bit for bit", all(np.array_equal(v, again[k]) for k, v in last.items()) and (one.out / "probes.csv").read_bytes() == (cut / "probes.csv").read_bytes())

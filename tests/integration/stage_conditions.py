@@ -125,9 +125,9 @@ check_true("... and at the end of a run without stages", re.search(r"note: from 
 
 # ------------------------------------------------------------------------------- restarts inside and at a change of stage
 OFF = ("-stage_middle_boundaries_off", "well,drain,source,heater", "-checkpoint_every", "0.5 ms", "-bc_air_alpha", "0 W/(m^2 K)")
-for integrator, cuts in {"sdirk2": (4, 6, 9, 12, 15), "hybrid": (4, 6, 9)}.items():  # steps; bursts
+for integrator, rows in {"sdirk2": (4, 6, 9, 12, 15), "hybrid": (4, 6, 9)}.items():  # of the balance
     straight = go("plane", integrator, *STAGES, *OFF)
-    for steps in cuts:
+    for steps in (straight.steps(k - 1) for k in rows):
         out = scratch() / "out"
         go("plane", integrator, *STAGES, *OFF, "-stepper_max_steps", steps, out=out)
         rest = go("plane", integrator, *STAGES, *OFF, "-restart", out / "checkpoint.h5", out=out)

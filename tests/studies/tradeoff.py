@@ -164,7 +164,7 @@ def bp2_record(case, kind, setting, cells, run, cpu, scene, reference):
 def bp2_explicit(case, kind, cells, setting, extra, bursts=40):
     """The faster case to its end (its error), and `bursts` of the case as it is (time a step and step, extrapolated to 2000 s)."""
     fast, slow = scenes.bp2(case, 1000, every=0.1), scenes.bp2(case, every=100.0)
-    part, cpu = Clock.of(slow, *adaptive(kind), *extra, "-stepper_max_steps", bursts, cells=cells)
+    part, cpu = Clock.of(slow, *adaptive(kind), *extra, "-stepper_max_steps", 256 * bursts, cells=cells)
     steps, t = steps_of(part), seconds(re.search(r"(?:finished|stopped) at t = (\S+ \w+)", part.output)[1])
     whole = cpu * slow.end / t
     budget = () if kind == "hybrid" else ("-stepper_max_steps", 100)  # a step of a microsecond: no end in sight
@@ -223,7 +223,7 @@ def permeability(bar=0.01):
 def cheapest(scene, kind, want, bar, bursts=60):
     """The longest step of a row of settings that keeps the bar; explicit ones whose end is far are extrapolated."""
     if kind in EXPLICIT:
-        run, cpu = Clock.of(scene, *adaptive(kind), "-stepper_max_steps", bursts)
+        run, cpu = Clock.of(scene, *adaptive(kind), "-stepper_max_steps", 256 * bursts)
         said = re.search(r"(finished|stopped) at t = (\S+ \w+)", run.output)
         if run.code or not said:
             return {"kind": kind, "code": run.code, "why": why(run)}

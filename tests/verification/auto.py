@@ -55,9 +55,9 @@ check_true("... and hybrid alone refuses them", refused.returncode == 2 and "hyb
 
 # ------------------------------------------------------------------------------- a change leaves everything as it was
 rows = run.balance["time_s"]
-first, second = (int(np.argmin(np.abs(rows - t))) + 1 for t, *_ in found)  # advances until each change
-there = column("auto", "-stepper_max_steps", first)
-alone = column("sdirk2", "-stepper_max_steps", first)
+first, second = (int(np.argmin(np.abs(rows - t))) for t, *_ in found)  # rows at each change
+there = column("auto", "-stepper_max_steps", run.steps(first))
+alone = column("sdirk2", "-stepper_max_steps", run.steps(first))
 names = _files.different(there.out, alone.out, ("probes.csv", "balance.csv"))
 check_true("particles and totals at a change are those of sdirk2 alone, bit for bit",
            changes(there) and {n.split("/")[-1] for n in names} <= {"kind", "votes", "patience", "since", "spent", "hold", "fresh", "err_old", "dt"}, ", ".join(names))  # fmt: skip
@@ -65,15 +65,15 @@ check_true("particles and totals at a change are those of sdirk2 alone, bit for 
 # ------------------------------------------------------------------------------------------------------ restart, ranks
 for what, cut in {"before the change to hybrid": first - 1, "at it": first, "after it": first + 1, "at the change back": second, "after the change back": second + 1}.items():
     out = scratch() / "out"
-    column("auto", "-stepper_max_steps", cut, out=out)
+    column("auto", "-stepper_max_steps", run.steps(cut), out=out)
     column("auto", "-restart", out / "checkpoint.h5", out=out)
     names = _files.different(run.out, out)
     check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
 # On half the cells; on 2 ranks all of it and cut, on 4 until hybrid has begun: a step of hybrid waits for neighbours some 25 times, whatever there is to do.
 run, found = runs["auto", 13], changes(runs["auto", 13])
-first, second = (int(np.argmin(np.abs(run.balance["time_s"] - t))) + 1 for t, *_ in found)
+first, second = (int(np.argmin(np.abs(run.balance["time_s"] - t))) for t, *_ in found)
 for ranks in (2, 4):
-    many = column("auto", *(("-stepper_max_steps", first + 40) if ranks > 2 else ()), cells=13, ranks=ranks)
+    many = column("auto", *(("-stepper_max_steps", run.steps(first + 40)) if ranks > 2 else ()), cells=13, ranks=ranks)
     there = found[:1] if ranks > 2 else found
     check_true(f"{ranks} ranks change at the same steps", [c[1:] for c in changes(many)] == [c[1:] for c in there] and np.allclose([c[0] for c in changes(many)], [c[0] for c in there], rtol=1e-6), str(changes(many)))
     rows = TIMES[TIMES <= many.time[-1]]
@@ -82,8 +82,8 @@ for ranks in (2, 4):
         continue
     out, parts, before = scratch() / f"cut{ranks}", [], 0
     for cut in (first - 1, first, first + 1, second - 1, second, second + 1, None):  # one run in seven parts: before, at and after either change
-        parts.append(column("auto", *(("-restart", out / "checkpoint.h5") if before else ()), *(("-stepper_max_steps", cut - before) if cut else ()), cells=13, ranks=ranks, out=out))
-        before = cut
+        parts.append(column("auto", *(("-restart", out / "checkpoint.h5") if before else ()), *(("-stepper_max_steps", run.steps(cut) - before) if cut else ()), cells=13, ranks=ranks, out=out))
+        before = run.steps(cut) if cut else 0
     said = [c for part in parts for c in changes(part)]  # sums of ranks come in any order, so not bit for bit
     check_true(f"{ranks} ranks cut before, at and after either change: it changes where the whole does", said == changes(many), str(said))
     judge("slopes", f"auto, {ranks} ranks cut before, at and after either change: p of the whole against the uncut run, over its range", np.max(np.abs(parts[-1].probe("middle")["p_Pa"] - many.probe("middle")["p_Pa"])) / Q, 1e-9)

@@ -131,6 +131,10 @@ class Run:
     def balance(self):
         return self.csv("balance.csv")
 
+    def steps(self, row):
+        """Steps until a row of the balance, of which hybrid has one for up to 256 steps."""
+        return int(self.balance["step"][row])
+
     @property
     def time(self):
         """(rows,) times of the probe rows, s."""

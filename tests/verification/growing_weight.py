@@ -41,12 +41,12 @@ check_true("ground that holds: sdirk2 bit for bit", not changes(held) and not na
 
 for what, cut_at in {"before the change": first - 1, "at the change": first, "after it": first + 1, "at the change back": second, "three steps after it": second + 3}.items():
     out = scratch() / "out"
-    cut("auto", "-stepper_max_steps", cut_at, out=out)
+    cut("auto", "-stepper_max_steps", run.steps(cut_at - 1), out=out)
     cut("auto", "-restart", out / "checkpoint.h5", out=out)
     names = _files.different(run.out, out)
     check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
 for ranks in (2, 4):
-    many = changes(cut("auto", "-stepper_max_steps", first + 8, ranks=ranks))
+    many = changes(cut("auto", "-stepper_max_steps", run.steps(first + 7), ranks=ranks))
     check_true(f"{ranks} ranks go over to hybrid", [c[1:] for c in many] == [("sdirk2", "hybrid")] and np.isclose(many[0][0], found[0][0], rtol=1e-6), str(many))
 mass = [np.sum(p["mass_solid"]) for _, p in run.snapshots()]
 judge("slopes", "... mass of the solid, largest change", np.ptp(mass) / mass[0], 1e-14)
