@@ -142,6 +142,7 @@ typedef struct {
   Integrator     kind;
   const Tableau *tableau; /* of an implicit scheme, which StepperImplicitStep advances; else null, and ... */
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
+  ExplicitOptions form; /* of one without a tableau: what does not follow from keys */
   /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
   PetscErrorCode (*create)(Stepper *s);
   PetscErrorCode (*destroy)(Stepper *s);
@@ -160,8 +161,9 @@ typedef struct {
   double   good_t;   /* time of Stepper.good, s */
 } Auto;
 
-extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit,
-    StepperScheme_Paper;
+#define STEPPER_SCHEME(name, word, scheme, kinds) extern const StepperScheme StepperScheme_##scheme;
+CL_INTEGRATORS(STEPPER_SCHEME)
+#undef STEPPER_SCHEME
 
 /* What the rest of the run would cost, roughly: steps, and seconds of the slowest rank. */
 typedef struct {

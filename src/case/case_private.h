@@ -120,7 +120,7 @@ typedef struct {
   bool (*acts)(const void *); /* does it anything in this instance?  NULL = always */
   const char *idle;           /* when, in words */
   bool        felt;           /* acts even where it is not needed */
-  unsigned    by;             /* integrators (INTEGRATORS_...) that know it; 0: all */
+  unsigned    by;             /* kinds of integrators (BY_...) that know it; 0: all */
   bool        plain;          /* a number without unit on the command line is in SI */
   bool        kept;           /* not given, what is there stays; `def` says in words what that is */
   bool        own;            /* never that of the instance which this one is like */
@@ -266,7 +266,7 @@ static inline bool KeyActs(const Key *k, const Case *c, const void *instance)
 {
   return k->felt || (KeyNeeded(k, c) && (!k->acts || k->acts(instance)));
 }
-void IntegratorsWords(unsigned by, char text[64]); /* "sdirk2, euler, auto" */
+void IntegratorsWords(unsigned by, char text[64]); /* of these kinds: "sdirk2, euler, auto" */
 /* idle.c: ... and is it known to the case's integrator, or to that of one of its stages? */
 bool KeyKnown(const Key *k, Group g, const Case *c, const void *instance);
 /* fingerprint.c: may a restart change it?  How to run the scene, and the numerics of the model. */

@@ -28,8 +28,6 @@ static void CheckCase(Reader *r, const Case *c)
   if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);
-  else if (c->scene.compression_heat && c->integrator == INTEGRATOR_PAPER)
-    FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known to hybrid_paper");
   if (c->scene.ambient_density > 0.0 && SceneGravity(&c->scene) == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)",
             c->scene.ambient_density);
@@ -120,18 +118,14 @@ static void CheckGas(Reader *r, const Scene *c, const Region *g)
             g->temperature, law->Tc, law->Tc - CL_ZERO_CELSIUS);
 }
 
-/* Beds (306) keep their shape about an axis if they are level; the paper's bare form has not (350). */
-static void CheckBeds(Reader *r, const Case *c, const Material *m)
+/* Beds (306) keep their shape about an axis if they are level. */
+static void CheckBeds(Reader *r, const Scene *c, const Material *m)
 {
   const Permeability *law = &m->permeability;
 
-  if (law->ratio == 1.0 || !c->scene.fields.fluid)
-    return;
-  if (c->scene.axisymmetric && law->dip != 0.0)
+  if (law->ratio != 1.0 && c->fields.fluid && c->axisymmetric && law->dip != 0.0)
     FAIL_AT(GROUP_MATERIAL, m->name, "permeability_dip",
             "must be 0 deg when geometry is axisymmetric (%g deg): beds about an axis are level", law->dip);
-  if (c->integrator == INTEGRATOR_PAPER)
-    FAIL_AT(GROUP_MATERIAL, m->name, "permeability_ratio", "below 1 (%g) is not known to hybrid_paper", law->ratio);
 }
 
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
@@ -237,7 +231,7 @@ void CaseCheck(Reader *r, const Case *c)
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++) {
     CheckMaterial(r, &c->scene, &c->scene.material[i]);
     CheckRate(r, &c->scene.material[i]);
-    CheckBeds(r, c, &c->scene.material[i]);
+    CheckBeds(r, &c->scene, &c->scene.material[i]);
   }
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->scene.material[i]);

@@ -54,8 +54,8 @@
 #define ACTS(condition, words) .acts = condition, .idle = words
 /* what particles hold means something else with another value, where there are any of these fields */
 #define BINDS(fields) .binds = fields
-/* known to these integrators alone */
-#define BY(integrators) .by = integrators
+/* known to these kinds of integrators alone */
+#define BY(kinds) .by = BY_##kinds
 #define OFLAW(condition, words) WHEN(condition, words), ACTS(condition, words)
 
 /* Rows, ended by one without a name. */

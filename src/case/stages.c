@@ -39,35 +39,31 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
     ReaderError(r, key, NULL, "in stage %s: %s", stage, what);
 }
 
-/* What an integrator without matrices cannot do. */
-static void CheckLocal(Reader *r, const Case *c, const char *stage)
+/* What the case asks for and its integrator does not know. */
+static void CheckIntegrator(Reader *r, const Case *c, const char *stage)
 {
-  const Bc   *b       = SceneBcNeedsMatrix(&c->scene);
-  const char *unknown = CaseNeedsImplicit(c);
-  char        what[CASE_WHY];
+  const Bc   *b       = SceneBcUnknown(&c->scene, IntegratorKinds(c->integrator));
+  const char *unknown = b ? cl_condition[b->type].word : SceneUnknown(&c->scene, IntegratorKinds(c->integrator));
+  char        what[CASE_WHY], option[256];
 
-  if (b) {
-    char option[256];
-
-    KeyOption(option, sizeof option, GROUP_BC, b->name, "type");
-    ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
-                stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", case_integrator[c->integrator],
-                cl_condition[b->type].word);
+  if (!unknown)
     return;
-  }
-  if (unknown) {
-    snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", case_integrator[c->integrator], unknown);
+  snprintf(what, sizeof what, "%s does not know %s%s; use sdirk2 or euler", case_integrator[c->integrator],
+           b ? "the condition " : "", unknown);
+  if (b) {
+    KeyOption(option, sizeof option, GROUP_BC, b->name, "type");
+    ReaderError(r, option, NULL, "%s%s%s%s", stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", what);
+  } else
     Fail(r, stage, "stepper_type", what);
-  }
 }
 
 void CheckTimes(Reader *r, const Case *c, const char *stage)
 {
-  const bool local = !(INTEGRATORS_IMPLICIT >> c->integrator & 1u);
+  const bool local = !(IntegratorKinds(c->integrator) & BY_IMPLICIT);
   char       what[CASE_WHY];
 
-  if (local)
-    CheckLocal(r, c, stage);
+  if (!r->bad[GROUP_MATERIAL] && !r->bad[GROUP_REGION] && !r->bad[GROUP_BC])
+    CheckIntegrator(r, c, stage);
   if (local && c->dt > c->dt_max) {
     snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);

@@ -40,7 +40,7 @@ PetscErrorCode FindingsFindPaperLayers(Findings *f, FindingId id)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < PetscMax(f->c->nstage, 1); k++) {
     const Case  *c        = CaseInStage(f->c, k);
-    const double contrast = c->integrator == INTEGRATOR_PAPER ? SceneContrast(&c->scene) : 1.0;
+    const double contrast = IntegratorKinds(c->integrator) == BY_PAPER ? SceneContrast(&c->scene) : 1.0;
 
     if (contrast > LAYERED)
       SAY("permeability of the regions differs by a factor of %.3g: in the paper's form the least permeable material "
