@@ -77,8 +77,7 @@ static void CheckRate(const Reader *r, const Material *m)
     return;
   WARN_AT(FINDING_RATE_NOT_MEASURED, GROUP_MATERIAL, m->name, "kinetics_K0",
           "mat_%s_kinetics_K0 = %.6g mol/(m^2 Pa s) and mat_%s_kinetics_dE = %.6g J/mol make K_d = %.2g mol/(m^2 Pa s) "
-          "at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate %s (K0 of 3.6e4 goes with dE of 78 to 81 "
-          "kJ/mol; without dE K0 is K_d itself)",
+          "at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate %s",
           m->name, m->kinetics.K0, m->name, m->kinetics.dE, K, RATE_AT,
           K > SWIFT ? "is in equilibrium at once, in steps that may be far shorter" : "never reacts");
 }

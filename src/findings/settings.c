@@ -45,7 +45,7 @@ PetscErrorCode FindingsFindPaperLayers(Findings *f, FindingId id)
     if (contrast > LAYERED)
       SAY("permeability of the regions differs by a factor of %.3g: in the paper's form the least permeable material "
           "at a node holds all of its fluid, so that what flows along a layer is too little by what flows through "
-          "about a cell of it; implicit steps have no such error",
+          "about a cell of it",
           contrast);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
