@@ -245,10 +245,11 @@ bool WellFits(const Bc *b, const Well *w);
 bool WellRuns(const Scene *c, const Bc *b); /* along one axis in space; in the plane, not about an axis */
 void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void RegionsFinish(Scene *c);              /* once all keys are read */
-bool ShapesGood(Reader *r, const Case *c); /* else an error is said */
-/* Of good shapes: where two lie over each other the earlier one is cut; none is to be without particles. */
-PetscErrorCode RegionsCut(Reader *r, Case *c);
+void           RegionsFinish(Scene *c);              /* once all keys are read */
+bool           ShapesGood(Reader *r, const Case *c); /* else an error is said */
+PetscErrorCode RegionsCut(const Reader *r,
+                          Case         *c); /* of good shapes: where two lie over each other, the earlier one */
+bool           RegionsFilled(Reader *r, const Case *c);                     /* with particles; else an error is said */
 bool           FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
 void           CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
 void           CheckSource(Reader *r, const Scene *c, const Bc *b);
@@ -279,13 +280,13 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c);
 /* ---------------------------------------------------------------- stages.c */
 /* When the stages end, and with the last of them the run; before the keys of the case are read. */
 PetscErrorCode CaseStageEnds(Reader *r, Case *c);
-/* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
+/* The case as it holds in each stage; after the case is read and derived. */
 PetscErrorCode CaseStages(Reader *r, Case *c);
+void           CheckTimes(Reader *r, const Case *c); /* ends, integrators and steps, of stages or of a case without */
 /* ---------------------------------------------------------------- spacing.c */
 /* The lines and numbers of cells that the grid's spacing makes, once the keys of the case are read. */
 PetscErrorCode CaseSpacing(Reader *r, Scene *c);
 PetscErrorCode CaseStagesDestroy(Case *c);
-void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 
 /* ---------------------------------------------------------------- fieldset.c */
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
@@ -293,5 +294,6 @@ void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
 /* Which quantities probes write; after CaseFieldSetFinish. */
 void CaseQuantities(Reader *r, Case *c);
-/* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
+/* What the set leaves open in the regions, after all is read; whether the case asks for more than it holds. */
 void CaseFieldSetFinish(Reader *r, Case *c);
+void CheckFields(Reader *r, const Case *c);

@@ -1,28 +1,18 @@
 /* check: what no single key can show: values that must agree with each other. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include <stdio.h>
 #include <string.h>
 
-/* About an axis. */
-static void CheckRadius(Reader *r, const Scene *c)
-{
-  if (c->lower[0] < 0.0)
-    FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
-            c->lower[0]);
-}
-
 static void CheckCase(Reader *r, const Case *c)
 {
-  if (!c->nstage)
-    CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->scene.upper[d] <= c->scene.lower[d])
       FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on all axes (%g m <= %g m)", c->scene.upper[d],
               c->scene.lower[d]);
-  if (c->scene.axisymmetric)
-    CheckRadius(r, &c->scene);
+  if (c->scene.axisymmetric && c->scene.lower[0] < 0.0)
+    FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
+            c->scene.lower[0]);
   if (c->scene.basis == BASIS_TOTAL && c->scene.mean_strain > 0.0)
     FAIL_AT(GROUP_CASE, "", "basis", "total is not known with a mean_strain");
   if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
@@ -225,15 +215,17 @@ void CaseCheck(Reader *r, const Case *c)
 {
   const bool *bad = r->bad;
 
+  CheckFields(r, c);
+  if (!bad[GROUP_CASE] && !bad[GROUP_STAGE])
+    CheckTimes(r, c);
   if (!bad[GROUP_CASE])
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++) {
     CheckMaterial(r, &c->scene, &c->scene.material[i]);
     CheckRate(r, &c->scene.material[i]);
     CheckBeds(r, &c->scene, &c->scene.material[i]);
-  }
-  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->scene.material[i]);
+  }
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])
     CheckReduction(r, c);
   for (int d = 0; d < CL_DIM; d++)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <stddef.h>
 
 /* A default for every axis, and how an example of such a list is written. */

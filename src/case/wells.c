@@ -1,6 +1,5 @@
 /* wells: keys of a well that must agree with each other, with the grid and with the body. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
 
