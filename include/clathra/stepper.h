@@ -334,8 +334,6 @@ double StepperNextStop(const Stepper *s, bool *kink);
 /* extremes.c: those of the particles as they are go into the state; at the start, after every accepted step or burst.
    Collective. */
 PetscErrorCode StepperExtremes(Stepper *s, bool start);
-/* Of all ranks the struct whose first member, a double, is largest; bytes: its size.  Collective. */
-PetscErrorCode StepperShareLargest(MPI_Comm comm, void *largest, size_t bytes);
 /* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
    the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
 double StepperEquilibrium(const Scene *c, double from, double p, bool warm);
