@@ -50,11 +50,11 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 241,
     "... that choose numerics": 17,
-    "lines of C in src and include": 44813,  # 224 more: saturations carried with the total flow, tableaux of any number of stages, structs in place of long lists of parameters
+    "lines of C in src and include": 44812,
     f"functions with {MANY} parameters or more": 12,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
-    "words of docs and README": 39830,
+    "words of docs and README": 39815,
     "words of the equations": 11912,
     "files in scripts": 13,
 }

@@ -55,13 +55,20 @@ static void Why(const Key *k, const Case *c, bool known, char why[CASE_WHY])
 
 PetscErrorCode CaseIdle(Reader *r, const Case *c)
 {
-  char    *text, why[CASE_WHY];
+  static const Key newton = {.by = BY_IMPLICIT}; /* each of the options of Newton's method */
+
+  char    *text, *all, why[CASE_WHY];
   size_t   size;
   FILE    *f = open_memstream(&text, &size);
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  IntegratorsWords(newton.by, why);
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (const char *at = all; !KeyKnown(&newton, GROUP_CASE, c, NULL) && (at = strstr(at, "-newton_")); at++)
+    fprintf(f, "%s%.*s (it acts with %s)", n++ ? ", " : "", (int)strcspn(at, " "), at, why);
+  PetscCall(PetscFree(all));
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     for (PetscInt i = 0; i < (g == GROUP_CASE ? 1 : *GroupCount(c, g)); i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {

@@ -130,20 +130,12 @@ static PetscErrorCode StageKeys(Reader *r, Case *c, PetscInt i)
 /* Index of a name among those of a group, -1 and an error if it is not there. */
 static PetscInt Find(Reader *r, const Case *c, const CaseStage *s, const char *key, Group g, const char *name)
 {
-  const char *word[258], *best;
-  char        nearest[64];
-  PetscInt    n = 0;
+  const Key names = {.kind = KEY_NAMES, .names = g};
+  char      option[256];
+  PetscInt  i;
 
-  for (; n < *GroupCount(c, g) && n < 256; n++) {
-    word[n] = GroupInstance(c, g, n);
-    if (!strcasecmp(name, word[n]))
-      return n;
-  }
-  word[n] = NULL;
-  best    = WordNearest(name, word, nearest, sizeof nearest) ? nearest : NULL;
-  FAIL(s, key, "there is no %s '%s'%s%s%s", case_group[g].noun, name, best ? "; did you mean " : "", best ? best : "",
-       best ? "?" : "");
-  return -1;
+  KeyOption(option, sizeof option, GROUP_STAGE, s->name, key);
+  return KeyName(r, c, option, name, &names, &i) ? i : -1;
 }
 
 static void MarkNames(Reader *r, const Case *c, const CaseStage *s, const char *key, const char *names, bool *marked)

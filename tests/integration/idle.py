@@ -91,7 +91,7 @@ check_true("a scene without hydrate is no hmc", "fields: solid, water, gas;" in 
 
 # ---------------------------------------------------------------- keys of another integrator
 EXPLICIT = [w for k, v in (("cfl", 0.5), ("force_dt", "yes"), ("damping", 0.1), ("mass_scaling", 2)) for w in (f"-stepper_{k}", v)]
-IMPLICIT = ["-stepper_tol", "1e-2", "-stepper_dt_min", "1 ns", "-stepper_error_exponent", 4, "-stabilisation_ghost_penalty", 0.01]
+IMPLICIT = ["-stepper_tol", "1e-2", "-stepper_dt_min", "1 ns", "-stepper_error_exponent", 4, "-stabilisation_ghost_penalty", 0.01, "-newton_refactor", 3, "-newton_operator", "assembled"]
 PASSES, MEAN = ["-stepper_storage_passes", 3], ["-mean_strain", 0.5]
 for stepper, others in (("sdirk2", [*EXPLICIT, *PASSES]), ("euler", EXPLICIT), ("hybrid", IMPLICIT), ("hybrid_paper", [*IMPLICIT, *PASSES, *MEAN]), ("auto", [])):
     every = {w: "sdirk2, euler, auto" if w in IMPLICIT else "hybrid, explicit" for w in others[::2]}
