@@ -103,25 +103,23 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What PETSc cannot begin with is said by the user's mistake, an option or its file, without a trace. */
-static PetscErrorCode SayStart(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
-                               PetscErrorType type, const char *message, void *ctx)
-{
-  (void)comm, (void)line, (void)function, (void)file, (void)ctx;
-  if (type == PETSC_ERROR_INITIAL)
-    fprintf(stderr, "clathra: %s\n", message);
-  return n;
-}
-
+static bool started;   /* PETSc has begun */
 static bool no_memory; /* something could not be allocated */
 
-/* Memory that is not there is no bug: a sentence instead of a trace.  All else is PETSc's to say.  Of PETSc 3.18 what
-   allocates has a number of its own instead of the error's. */
-static PetscErrorCode SayMemory(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
-                                PetscErrorType type, const char *message, void *ctx)
+/* PETSc's error handler.  What PETSc cannot begin with is the user's mistake, an option or its file, and memory that is
+   not there is no bug: a sentence instead of a trace.  All else is PETSc's to say.  Of PETSc 3.18 what allocates has a
+   number of its own instead of the error's.  One handler for all: PETSc may free its place only as it was allocated,
+   and -malloc_debug changes that in between. */
+static PetscErrorCode Say(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                          PetscErrorType type, const char *message, void *ctx)
 {
   const bool allocates = type == PETSC_ERROR_INITIAL && (strstr(function, "Malloc") || strstr(function, "Realloc"));
 
+  if (!started) {
+    if (type == PETSC_ERROR_INITIAL)
+      fprintf(stderr, "clathra: %s\n", message);
+    return n;
+  }
   if (n != PETSC_ERR_MEM && !allocates && !no_memory)
     return PetscTraceBackErrorHandler(comm, line, function, file, n, type, message, ctx);
   if (!no_memory)
@@ -130,16 +128,6 @@ static PetscErrorCode SayMemory(MPI_Comm comm, int line, const char *function, c
             "on from its last checkpoint\n");
   no_memory = true;
   return n;
-}
-
-static bool started; /* PETSc has begun */
-
-/* One handler for both: PETSc may free its place only as it was allocated, and -malloc_debug changes that in between.
- */
-static PetscErrorCode Say(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
-                          PetscErrorType type, const char *message, void *ctx)
-{
-  return (started ? SayMemory : SayStart)(comm, line, function, file, n, type, message, ctx);
 }
 
 /* Exit code; of several ranks the others may wait for this one. */

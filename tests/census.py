@@ -25,8 +25,8 @@ def arguments(text):
 
 
 def wide(text):
-    """Names of functions of a C source with MANY parameters or more."""
-    return {m.group(1) for m in FUNCTION.finditer(COMMENT.sub(" ", text)) if arguments(m.group(2)) >= MANY}
+    """Names of functions of a C source with MANY parameters or more, but PETSc's error handler, whose list PETSc prescribes."""
+    return {m.group(1) for m in FUNCTION.finditer(COMMENT.sub(" ", text)) if arguments(m.group(2)) >= MANY and "PetscErrorType" not in m.group(2)}
 
 
 def counts(root):
@@ -50,8 +50,8 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 239,
     "... that choose numerics": 16,
-    "lines of C in src and include": 44821,  # 8 more: consistent storage of hybrid without a key
-    f"functions with {MANY} parameters or more": 21,
+    "lines of C in src and include": 44811,
+    f"functions with {MANY} parameters or more": 12,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
     "words of docs and README": 38058,

@@ -141,15 +141,15 @@ def peeks_of(path, text, private):
     return [f"{path}: {name} of Model is src/model's own" for name in sorted(private & named)]
 
 
-CHECK = re.compile(r"\bCheck\w*\(([^;{)]*)\)\s*\n?\{")
-FILLED = re.compile(r"(?<!const )\b(?:Case|Scene|Bc|Region|Material|Probe|Meter|CaseStage) \*")
+CHECK = re.compile(r"^[A-Za-z][\w \*]*?\b(\w*(?:Check|Valid|Good|Filled|Fits)\w*)\(([^;{)]*)\)\n\{\n(.*?)^\}", re.M | re.S)
+FILLED = re.compile(r"(?<!const )\b(?:Case|Scene|Bc|Region|Material|Probe|Meter|CaseStage) \*|^ *(?!r->)\w+->.*[^=!<>]=[^=]|\b\w+->\S*(?:\+\+|--);", re.M)
 
 
 def fillers_of(path, text):
-    """Sentences on checks of src/case that could fill a field of the case: what follows from keys is found before (derive.c)."""
+    """Sentences on checks of src/case that could fill a field of the case, or do: what follows from keys is found before (derive.c)."""
     if not path.startswith("src/case/"):
         return []
-    return [f"{path}: a check takes ({arguments}), which it could fill" for arguments in CHECK.findall(COMMENT.sub(" ", text)) if FILLED.search(arguments)]
+    return [f"{path}: {name} is a check and fills the case, or could" for name, *parts in CHECK.findall(COMMENT.sub(lambda m: m.group(1) or " ", text)) if any(map(FILLED.search, parts))]
 
 
 PLANTED = {  # path: text, whether it is wrong
@@ -182,7 +182,8 @@ def self_test():
     peeks = {("src/io/a.c", "e->m->coef[0] = s->model.x;"): 2, ("src/io/a.c", "m->grid; a->x; /* m->x */"): 0, ("src/model/a.c", "m->x"): 0}
     if private != {"coef", "x", "plate"} or any(len(peeks_of(path, text, private)) != n for (path, text), n in peeks.items()):
         wrong.append("private members of Model")
-    checks = {"static void CheckWell(Reader *r, const Case *c, Bc *b)\n{\n": 1, "void CheckWell(Reader *r, const Case *c, const Bc *b)\n{\n": 0}
+    head = "void CheckWell(Reader *r, const Case *c, const Bc *b)\n{\n"
+    checks = {head.replace("const Bc", "Bc") + "}": 1, head + "  c->scene.bc[0].at = 1;\n}": 1, head + "  Bc *o = c->scene.bc;\n}": 1, head + "  if (c->x >= 1 && b->y == 2)\n    r->bad[0] = !b->z;\n}": 0}
     if any(len(fillers_of("src/case/a.c", text)) != n for text, n in checks.items()):
         wrong.append("checks that fill")
     for path in wrong:

@@ -28,12 +28,13 @@ UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bond
         "fieldsets", "turning", "upwind")  # fmt: skip
 FIRST = {"laws": "laws_values", "grid": "upwind", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
-        "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "thin_cells", "heat_source", "bp2_reference")  # fmt: skip
+        "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "thin_cells", "heat_source", "sealed_layers", "bp2_reference")  # fmt: skip
 SPACE = ("total",)  # of these with scenes in space
 
 # (name, file, [(what stands there, what is planted), ...])
 LAWS, POINT, MODEL, BOUNDARY, EXPLICIT, HEADER = "src/laws/", "src/point/", "src/model/", "src/boundary/", "src/explicit/", "include/clathra/"
 FAULTS = [
+    ("half of what hybrid's particles store by themselves (413)", EXPLICIT + "stored.c", [("a[j] = e->t[T_CONSISTENT][p]", "a[j] = 0.5 * e->t[T_CONSISTENT][p]")]),
     ("water expands the wrong way", LAWS + "eos.c", [("law->K - law->beta * (T - law->T_ref)", "law->K + law->beta * (T - law->T_ref)"), ("-law->rho0 * de * law->beta", "law->rho0 * de * law->beta")]),
     ("ideal gas: kelvin less 0.15", LAWS + "eos.c", [("const double TK = T[q] + LAW_ZERO_CELSIUS;\n\n    rho_p[q] = law->M", "const double TK = T[q] + 273.0;\n\n    rho_p[q] = law->M")]),
     ("hydrate stiffens 2 % less", LAWS + "elasticity.c", [("law->ah * law->Eh", "0.98 * law->ah * law->Eh")]),

@@ -42,22 +42,29 @@ typedef struct {
 enum { ICE_WARN = 0, ICE_STOP };
 enum { LEAVING_STOP = 0, LEAVING_REMOVE };
 
-/* Time integrators, words of stepper_type. */
-typedef enum {
-  INTEGRATOR_SDIRK2 = 0,
-  INTEGRATOR_EULER,
-  INTEGRATOR_HYBRID,
-  INTEGRATOR_EXPLICIT,
-  INTEGRATOR_PAPER,
-  INTEGRATOR_AUTO,
-  INTEGRATOR_COUNT
-} Integrator;
+/* Time integrators.  X(name, word of stepper_type, scheme in src/stepper, kinds it honours what is known to); auto
+   takes steps of that scheme in turn with hybrid. */
+#define CL_INTEGRATORS(X)                                                                                              \
+  X(SDIRK2, "sdirk2", Sdirk2, BY_IMPLICIT)             /* two stages, second order */                                  \
+  X(EULER, "euler", Euler, BY_IMPLICIT)                /* backward, first order */                                     \
+  X(HYBRID, "hybrid", Hybrid, BY_EXPLICIT)             /* explicit motion, implicit drag and reaction */               \
+  X(EXPLICIT, "explicit", Explicit, BY_EXPLICIT)       /* ... and explicit drag */                                     \
+  X(PAPER, "hybrid_paper", Paper, BY_PAPER)            /* the paper's bare form of hybrid */                           \
+  X(AUTO, "auto", Sdirk2, BY_ALL_BUT_PAPER | BY_TURNS) /* the cheaper one at any time */
+#define CL_INTEGRATOR_ID(name, ...) INTEGRATOR_##name,
+typedef enum { CL_INTEGRATORS(CL_INTEGRATOR_ID) INTEGRATOR_COUNT } Integrator;
+#undef CL_INTEGRATOR_ID
 extern const char *const case_integrator[INTEGRATOR_COUNT + 1]; /* the words; ended by NULL */
-/* Sets of them: those that solve for all unknowns with a matrix, and those that do without. */
-#define INTEGRATOR_BIT(name) (1u << INTEGRATOR_##name)
-#define INTEGRATORS_IMPLICIT (INTEGRATOR_BIT(SDIRK2) | INTEGRATOR_BIT(EULER) | INTEGRATOR_BIT(AUTO))
-#define INTEGRATORS_EXPLICIT                                                                                           \
-  (INTEGRATOR_BIT(HYBRID) | INTEGRATOR_BIT(EXPLICIT) | INTEGRATOR_BIT(PAPER) | INTEGRATOR_BIT(AUTO))
+
+#define CL_INTEGRATOR_KINDS(name, word, scheme, kinds) kinds,
+/* Kinds (BY_...) of an integrator. */
+static inline unsigned IntegratorKinds(Integrator integrator)
+{
+  static const unsigned kinds[INTEGRATOR_COUNT] = {CL_INTEGRATORS(CL_INTEGRATOR_KINDS)};
+
+  return kinds[integrator];
+}
+#undef CL_INTEGRATOR_KINDS
 
 typedef struct Case {
   Scene scene;                    /* first: CaseOf */
@@ -114,13 +121,11 @@ typedef struct CaseStage {
   Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
 } CaseStage;
 
-/* What keeps the case from steps without a matrix, as it says it (a boundary by its name); NULL if nothing does.
-   Stabilisations that such steps go without are those of the implicit steps of `auto`; alone, they refuse them. */
+/* What keeps the case from steps without a matrix, as it says it (a boundary by its name); NULL if nothing does.  auto
+   has what its implicit steps have, in turn. */
 static inline const char *CaseNeedsImplicit(const Case *c)
 {
-  const char *scene = SceneNeedsImplicit(&c->scene);
-
-  return scene || c->integrator == INTEGRATOR_AUTO ? scene : SceneStabilisesImplicit(&c->scene);
+  return SceneUnknown(&c->scene, BY_EXPLICIT | (IntegratorKinds(c->integrator) & BY_TURNS));
 }
 
 /* The case as it holds in stage k; the case itself if it has no stages. */

@@ -24,8 +24,11 @@ typedef struct {
   double  *x; /* n x 2, m */
 } Points;
 
-/* Which integrators know a kind; the others refuse it by name. */
-enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit; without a matrix */
+/* Kinds of integrators: implicit; without a matrix; the paper's bare form of the latter; implicit in turn with hybrid.
+   What only some know names their kinds; an integrator of none of them refuses it by name. */
+enum { BY_IMPLICIT = 1, BY_EXPLICIT = 2, BY_PAPER = 4, BY_TURNS = 8 };
+enum { BY_ALL_BUT_PAPER = BY_IMPLICIT | BY_EXPLICIT, BY_STABLE_STEPS = BY_EXPLICIT | BY_PAPER };
+enum { BY_ALL = BY_ALL_BUT_PAPER | BY_PAPER };
 
 /* On faces, which move with the body; a well and a heat source have some without area inside.
    X(kind, word, fields any of which it needs, integrators, its terms in src/boundary/terms.c or well.c, what it
@@ -38,7 +41,7 @@ enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit
   X(FACE_TEMPERATURE, "face_temperature", HAS_HEAT, BY_ALL, FaceTemperature, "T, degC")                                \
   X(INFLOW, "inflow", HAS_WATER, BY_ALL, FaceInflows, "volume of water and gas into the body, m/s")                    \
   X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")              \
-  X(WELL, "well", HAS_WATER, BY_ALL, FaceWell,                                                                         \
+  X(WELL, "well", HAS_WATER, BY_ALL_BUT_PAPER, FaceWell,                                                               \
     "a line normal to the plane, in space along an axis: its pressure, Pa, or rates, kg/s (well.c)")                   \
   X(HEAT_SOURCE, "heat_source", HAS_HEAT, BY_ALL, FaceHeatSource,                                                      \
     "in a region's particles, W/m^3 of their volume at the start")
@@ -53,7 +56,7 @@ enum { ON_FACES = 1, ON_PLANE, IN_REGION };
   X(REGION_TEMPERATURE, "region_temperature", HAS_HEAT, BY_ALL, NodeTemperature, IN_REGION, "T, degC")
 /* Kinds that the reader makes of others, whose word they share; the last column tells them apart.  A plate without a
    side is a grid plane with a velocity, for small motions. */
-#define CL_NODE_FORMS(X) X(PLATE_LINE, "plate", HAS_SOLID, BY_MATRIX, NodeRoller, ON_PLANE, "without a side")
+#define CL_NODE_FORMS(X) X(PLATE_LINE, "plate", HAS_SOLID, BY_IMPLICIT, NodeRoller, ON_PLANE, "without a side")
 
 #define CL_CONDITION_ID(kind, ...) BC_##kind,
 typedef enum {
@@ -70,13 +73,16 @@ enum { BC_INSIDE = 1u << BC_WELL | 1u << BC_HEAT_SOURCE };
 enum { BC_CURRENT = 1u << BC_PLATE | 1u << BC_PLATE_LINE };
 #undef CL_CONDITION_ID
 
-/* Bits 1 << BcType of those that the integrators without a matrix know. */
-#define CL_CONDITION_BIT(kind, word, has, by, ...) | ((by)&BY_STEPS ? 1u << BC_##kind : 0u)
-enum {
-  BC_LOCAL =
-      0u CL_FACE_CONDITIONS(CL_CONDITION_BIT) CL_NODE_CONDITIONS(CL_CONDITION_BIT) CL_NODE_FORMS(CL_CONDITION_BIT)
-};
-#undef CL_CONDITION_BIT
+#define CL_CONDITION_BY(kind, word, has, by, ...) [BC_##kind] = (by),
+/* Kinds of integrators that know a condition. */
+static inline unsigned BcKnownBy(BcType type)
+{
+  static const unsigned by[BC_COUNT] = {BY_ALL, CL_FACE_CONDITIONS(CL_CONDITION_BY) CL_NODE_CONDITIONS(CL_CONDITION_BY)
+                                                    CL_NODE_FORMS(CL_CONDITION_BY)};
+
+  return by[type];
+}
+#undef CL_CONDITION_BY
 
 /* For which fluids a pressure opens a face; it stays closed for the other. */
 typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;

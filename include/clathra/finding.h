@@ -15,12 +15,12 @@ typedef enum {
   FINDING_AT_SUMMARY,
   FINDING_AT_END
 } FindingWhen;
-/* How it is said: "clathra: note: ..." and "clathra: warning: ..." go to stderr; "Given up at t = ...", "A likely
-   cause:
-   ..." and the lines of the summary to stdout. */
+/* Notes and warnings are said on stderr, behind a place in the case or the program's name; all else on stdout. */
 typedef enum { FINDING_AS_NOTE, FINDING_AS_WARNING, FINDING_AS_END, FINDING_AS_CAUSE, FINDING_AS_LINE } FindingKind;
 
 #define CL_TRY_CELLS "finer cells there, about as high as wide at the end of a heater; a ramp instead of a jump"
+#define CL_TRY_AMBIENT "ambient: {pressure: ...} for what pores and tractions share, and tractions beyond it"
+#define CL_TRY_REST "-restart_as_initial of a run that came to rest"
 /* X(finding, when, kind, who looks for it in src/findings, what to try where that is always the same) */
 #define CL_FINDINGS(X)                                                                                                 \
   /* of the case */                                                                                                    \
@@ -28,7 +28,8 @@ typedef enum { FINDING_AS_NOTE, FINDING_AS_WARNING, FINDING_AS_END, FINDING_AS_C
   X(REGIONS_OVERLAP, SIGHT, NOTE, FindingsFindNone, "")                                                                \
   X(DILATION_ABOVE_FRICTION, SIGHT, WARNING, FindingsFindNone, "")                                                     \
   X(STRENGTH_BY_GRID, SIGHT, WARNING, FindingsFindNone, "")                                                            \
-  X(RATE_NOT_MEASURED, SIGHT, WARNING, FindingsFindNone, "")                                                           \
+  X(RATE_NOT_MEASURED, SIGHT, WARNING, FindingsFindNone,                                                               \
+    "K0 of 3.6e4 with dE of 78 to 81 kJ/mol; without dE K0 is K_d itself")                                             \
   /* of the files */                                                                                                   \
   X(FOLDER_NOT_LOCKED, SIGHT, WARNING, FindingsFindNone, "")                                                           \
   X(TABLE_MISSING, SIGHT, WARNING, FindingsFindNone, "")                                                               \
@@ -38,27 +39,32 @@ typedef enum { FINDING_AS_NOTE, FINDING_AS_WARNING, FINDING_AS_END, FINDING_AS_C
   X(SNAPSHOT_MISSING, SIGHT, WARNING, FindingsFindNone, "")                                                            \
   X(SNAPSHOT_DAMAGED, SIGHT, WARNING, FindingsFindNone, "")                                                            \
   /* of the start */                                                                                                   \
-  X(PAPER_LAYERS, START, WARNING, FindingsFindPaperLayers, "")                                                         \
+  X(PAPER_LAYERS, START, WARNING, FindingsFindPaperLayers, "stepper_type: hybrid or sdirk2, without that error")       \
   X(LATE_OUTPUT, START, NOTE, FindingsFindLateOutput, "")                                                              \
   X(CLOSED_FACES, START, WARNING, FindingsFindClosedFaces, "")                                                         \
   X(FREE_SIDES, SEEDING, WARNING, FindingsFindFreeSides, "")                                                           \
-  X(TORN_PORES, SEEDING, WARNING, FindingsFindTornPores, "")                                                           \
+  X(TORN_PORES, SEEDING, WARNING, FindingsFindTornPores, CL_TRY_AMBIENT)                                               \
   X(CAPILLARY_JUMP, SEEDING, WARNING, FindingsFindCapillaryJump, "")                                                   \
-  X(TRAPPED_GAS, SEEDING, WARNING, FindingsFindTrappedGas, "")                                                         \
-  X(UNSTRESSED, SEEDING, WARNING, FindingsFindUnstressed, "")                                                          \
+  X(TRAPPED_GAS, SEEDING, WARNING, FindingsFindTrappedGas,                                                             \
+    "more Sg or a smaller Sgr, for gas that water has not trapped; Sg: 0, without gas")                                \
+  X(UNSTRESSED, SEEDING, WARNING, FindingsFindUnstressed,                                                              \
+    "stress: {geostatic: K0}; gravity_ramp; -restart_as_initial of a body that has settled")                           \
   X(START_TENSION, SEEDING, WARNING, FindingsFindStartTension, "")                                                     \
-  X(FAR_PRESSURE, BEGIN, WARNING, FindingsFindFarPressure, "")                                                         \
-  X(RISING_GAS, BEGIN, WARNING, FindingsFindRisingGas, "")                                                             \
-  X(UNSTABLE_HYDRATE, BEGIN, WARNING, FindingsFindUnstableHydrate, "")                                                 \
-  X(FORMING, BEGIN, WARNING, FindingsFindForming, "")                                                                  \
-  X(FORMING_BESIDE, BEGIN, NOTE, FindingsFindForming, "")                                                              \
+  X(FAR_PRESSURE, BEGIN, WARNING, FindingsFindFarPressure, "hydrostatic: yes with one datum; " CL_TRY_REST)            \
+  X(RISING_GAS, BEGIN, WARNING, FindingsFindRisingGas,                                                                 \
+    "less gas, with no relative permeability; layers with the more gas the higher they lie; " CL_TRY_REST)             \
+  X(UNSTABLE_HYDRATE, BEGIN, WARNING, FindingsFindUnstableHydrate,                                                     \
+    "more pressure; a lower temperature; a first stage with kinetics_active: no")                                      \
+  X(FORMING, BEGIN, WARNING, FindingsFindForming,                                                                      \
+    "Sg: 0; less pressure; a higher temperature; a first stage with kinetics_active: no")                              \
+  X(FORMING_BESIDE, BEGIN, NOTE, FindingsFindForming, "Sg: 0; a place below the stability zone")                       \
   /* on the way */                                                                                                     \
   X(SLOW, STEP, NOTE, FindingsFindSlow, "")                                                                            \
   X(TEMPERATURE_NOW, STEP, WARNING, FindingsFindTemperature, CL_TRY_CELLS)                                             \
   X(ICE, STEP, WARNING, FindingsFindIce, "")                                                                           \
   X(STILL, STEP, NOTE, FindingsFindStill, "")                                                                          \
   X(GIVEN_UP, SIGHT, END, FindingsFindNone, "")                                                                        \
-  X(CAUSE_TORN_PORES, GIVING_UP, CAUSE, FindingsFindTornPores, "")                                                     \
+  X(CAUSE_TORN_PORES, GIVING_UP, CAUSE, FindingsFindTornPores, CL_TRY_AMBIENT)                                         \
   X(CAUSE_CAPILLARY_JUMP, GIVING_UP, CAUSE, FindingsFindCapillaryJump, "")                                             \
   /* in the summary */                                                                                                 \
   X(RUN, SIGHT, LINE, FindingsFindNone, "")                                                                            \

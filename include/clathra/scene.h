@@ -311,11 +311,11 @@ static inline bool SceneStrainsAcross(const Scene *c)
   return CL_DIM == 2 && (c->axisymmetric || SceneHasCellMeans(c));
 }
 
-/* First condition that the integrators without a matrix do not know, or NULL. */
-static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
+/* First condition that integrators of none of these kinds (BY_...) know, or NULL. */
+static inline const Bc *SceneBcUnknown(const Scene *c, unsigned kinds)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type != BC_NONE && !(BC_LOCAL >> c->bc[k].type & 1u))
+    if (!(BcKnownBy(c->bc[k].type) & kinds))
       return &c->bc[k];
   }
   return NULL;
@@ -339,22 +339,22 @@ static inline bool SceneHasLongCells(const Scene *c)
   return CL_DIM == 2 && c->fields.heat;
 }
 
-/* The stabilisation that is on by a key and that steps without a matrix go without, as the case says it; or NULL. */
-static inline const char *SceneStabilisesImplicit(const Scene *c)
-{
-  return c->stabilisation.donor ? "stabilisation_donor" : NULL;
-}
+/* X(what a scene may ask for, as the case says it; kinds of integrators that know it; does this scene c?) */
+#define CL_FEATURES(X)                                                                                                 \
+  X("geometry: axisymmetric", BY_IMPLICIT, c->axisymmetric)                                                            \
+  X("inertia: no", BY_IMPLICIT, !c->inertia)                                                                           \
+  X("basis: total", BY_IMPLICIT, c->basis == BASIS_TOTAL)                                                              \
+  X("an inflow of gas where a region has Sg: 0", BY_IMPLICIT, SceneLetsGasIn(c))                                       \
+  X("stabilisation_donor", BY_IMPLICIT | BY_TURNS, c->stabilisation.donor)                                             \
+  X("compression_heat: yes", BY_ALL_BUT_PAPER, c->compression_heat)                                                    \
+  X("permeability_ratio below 1", BY_ALL_BUT_PAPER, SceneHasBeds(c))
 
-/* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
-   nothing does. */
-static inline const char *SceneNeedsImplicit(const Scene *c)
+/* The first that integrators of none of these kinds know, a boundary by its name; NULL if there is none. */
+static inline const char *SceneUnknown(const Scene *c, unsigned kinds)
 {
-  const Bc *b = SceneBcNeedsMatrix(c);
+  const Bc *b = SceneBcUnknown(c, kinds);
+#define CL_FEATURE_UNKNOWN(words, by, asked) : !(kinds & (by)) && (asked) ? (words)
 
-  return b                         ? b->name
-         : c->axisymmetric         ? "geometry: axisymmetric"
-         : !c->inertia             ? "inertia: no"
-         : c->basis == BASIS_TOTAL ? "basis: total"
-         : SceneLetsGasIn(c)       ? "an inflow of gas where a region has Sg: 0"
-                                   : NULL;
+  return b ? b->name CL_FEATURES(CL_FEATURE_UNKNOWN) : NULL;
+#undef CL_FEATURE_UNKNOWN
 }

@@ -142,6 +142,7 @@ typedef struct {
   Integrator     kind;
   const Tableau *tableau; /* of an implicit scheme, which StepperImplicitStep advances; else null, and ... */
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
+  ExplicitOptions form; /* of one without a tableau: what does not follow from keys */
   /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
   PetscErrorCode (*create)(Stepper *s);
   PetscErrorCode (*destroy)(Stepper *s);
@@ -160,8 +161,9 @@ typedef struct {
   double   good_t;   /* time of Stepper.good, s */
 } Auto;
 
-extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit,
-    StepperScheme_Paper;
+#define STEPPER_SCHEME(name, word, scheme, kinds) extern const StepperScheme StepperScheme_##scheme;
+CL_INTEGRATORS(STEPPER_SCHEME)
+#undef STEPPER_SCHEME
 
 /* What the rest of the run would cost, roughly: steps, and seconds of the slowest rank. */
 typedef struct {
@@ -332,8 +334,6 @@ double StepperNextStop(const Stepper *s, bool *kink);
 /* extremes.c: those of the particles as they are go into the state; at the start, after every accepted step or burst.
    Collective. */
 PetscErrorCode StepperExtremes(Stepper *s, bool start);
-/* Of all ranks the struct whose first member, a double, is largest; bytes: its size.  Collective. */
-PetscErrorCode StepperShareLargest(MPI_Comm comm, void *largest, size_t bytes);
 /* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
    the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
 double StepperEquilibrium(const Scene *c, double from, double p, bool warm);

@@ -120,7 +120,7 @@ typedef struct {
   bool (*acts)(const void *); /* does it anything in this instance?  NULL = always */
   const char *idle;           /* when, in words */
   bool        felt;           /* acts even where it is not needed */
-  unsigned    by;             /* integrators (INTEGRATORS_...) that know it; 0: all */
+  unsigned    by;             /* kinds of integrators (BY_...) that know it; 0: all */
   bool        plain;          /* a number without unit on the command line is in SI */
   bool        kept;           /* not given, what is there stays; `def` says in words what that is */
   bool        own;            /* never that of the instance which this one is like */
@@ -245,10 +245,11 @@ bool WellFits(const Bc *b, const Well *w);
 bool WellRuns(const Scene *c, const Bc *b); /* along one axis in space; in the plane, not about an axis */
 void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void RegionsFinish(Scene *c);              /* once all keys are read */
-bool ShapesGood(Reader *r, const Case *c); /* else an error is said */
-/* Of good shapes: where two lie over each other the earlier one is cut; none is to be without particles. */
-PetscErrorCode RegionsCut(Reader *r, Case *c);
+void           RegionsFinish(Scene *c);              /* once all keys are read */
+bool           ShapesGood(Reader *r, const Case *c); /* else an error is said */
+PetscErrorCode RegionsCut(const Reader *r,
+                          Case         *c); /* of good shapes: where two lie over each other, the earlier one */
+bool           RegionsFilled(Reader *r, const Case *c);                     /* with particles; else an error is said */
 bool           FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
 void           CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
 void           CheckSource(Reader *r, const Scene *c, const Bc *b);
@@ -266,7 +267,7 @@ static inline bool KeyActs(const Key *k, const Case *c, const void *instance)
 {
   return k->felt || (KeyNeeded(k, c) && (!k->acts || k->acts(instance)));
 }
-void IntegratorsWords(unsigned by, char text[64]); /* "sdirk2, euler, auto" */
+void IntegratorsWords(unsigned by, char text[64]); /* of these kinds: "sdirk2, euler, auto" */
 /* idle.c: ... and is it known to the case's integrator, or to that of one of its stages? */
 bool KeyKnown(const Key *k, Group g, const Case *c, const void *instance);
 /* fingerprint.c: may a restart change it?  How to run the scene, and the numerics of the model. */
@@ -279,13 +280,13 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c);
 /* ---------------------------------------------------------------- stages.c */
 /* When the stages end, and with the last of them the run; before the keys of the case are read. */
 PetscErrorCode CaseStageEnds(Reader *r, Case *c);
-/* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
+/* The case as it holds in each stage; after the case is read and derived. */
 PetscErrorCode CaseStages(Reader *r, Case *c);
+void           CheckTimes(Reader *r, const Case *c); /* ends, integrators and steps, of stages or of a case without */
 /* ---------------------------------------------------------------- spacing.c */
 /* The lines and numbers of cells that the grid's spacing makes, once the keys of the case are read. */
 PetscErrorCode CaseSpacing(Reader *r, Scene *c);
 PetscErrorCode CaseStagesDestroy(Case *c);
-void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 
 /* ---------------------------------------------------------------- fieldset.c */
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
@@ -293,5 +294,6 @@ void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
 /* Which quantities probes write; after CaseFieldSetFinish. */
 void CaseQuantities(Reader *r, Case *c);
-/* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
+/* What the set leaves open in the regions, after all is read; whether the case asks for more than it holds. */
 void CaseFieldSetFinish(Reader *r, Case *c);
+void CheckFields(Reader *r, const Case *c);

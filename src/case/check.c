@@ -1,35 +1,23 @@
 /* check: what no single key can show: values that must agree with each other. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include <stdio.h>
 #include <string.h>
 
-/* About an axis. */
-static void CheckRadius(Reader *r, const Scene *c)
-{
-  if (c->lower[0] < 0.0)
-    FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
-            c->lower[0]);
-}
-
 static void CheckCase(Reader *r, const Case *c)
 {
-  if (!c->nstage)
-    CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->scene.upper[d] <= c->scene.lower[d])
       FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on all axes (%g m <= %g m)", c->scene.upper[d],
               c->scene.lower[d]);
-  if (c->scene.axisymmetric)
-    CheckRadius(r, &c->scene);
+  if (c->scene.axisymmetric && c->scene.lower[0] < 0.0)
+    FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
+            c->scene.lower[0]);
   if (c->scene.basis == BASIS_TOTAL && c->scene.mean_strain > 0.0)
     FAIL_AT(GROUP_CASE, "", "basis", "total is not known with a mean_strain");
   if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);
-  else if (c->scene.compression_heat && c->integrator == INTEGRATOR_PAPER)
-    FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known to hybrid_paper");
   if (c->scene.ambient_density > 0.0 && SceneGravity(&c->scene) == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)",
             c->scene.ambient_density);
@@ -79,8 +67,7 @@ static void CheckRate(const Reader *r, const Material *m)
     return;
   WARN_AT(FINDING_RATE_NOT_MEASURED, GROUP_MATERIAL, m->name, "kinetics_K0",
           "mat_%s_kinetics_K0 = %.6g mol/(m^2 Pa s) and mat_%s_kinetics_dE = %.6g J/mol make K_d = %.2g mol/(m^2 Pa s) "
-          "at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate %s (K0 of 3.6e4 goes with dE of 78 to 81 "
-          "kJ/mol; without dE K0 is K_d itself)",
+          "at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate %s",
           m->name, m->kinetics.K0, m->name, m->kinetics.dE, K, RATE_AT,
           K > SWIFT ? "is in equilibrium at once, in steps that may be far shorter" : "never reacts");
 }
@@ -120,18 +107,14 @@ static void CheckGas(Reader *r, const Scene *c, const Region *g)
             g->temperature, law->Tc, law->Tc - CL_ZERO_CELSIUS);
 }
 
-/* Beds (306) keep their shape about an axis if they are level; the paper's bare form has not (350). */
-static void CheckBeds(Reader *r, const Case *c, const Material *m)
+/* Beds (306) keep their shape about an axis if they are level. */
+static void CheckBeds(Reader *r, const Scene *c, const Material *m)
 {
   const Permeability *law = &m->permeability;
 
-  if (law->ratio == 1.0 || !c->scene.fields.fluid)
-    return;
-  if (c->scene.axisymmetric && law->dip != 0.0)
+  if (law->ratio != 1.0 && c->fields.fluid && c->axisymmetric && law->dip != 0.0)
     FAIL_AT(GROUP_MATERIAL, m->name, "permeability_dip",
             "must be 0 deg when geometry is axisymmetric (%g deg): beds about an axis are level", law->dip);
-  if (c->integrator == INTEGRATOR_PAPER)
-    FAIL_AT(GROUP_MATERIAL, m->name, "permeability_ratio", "below 1 (%g) is not known to hybrid_paper", law->ratio);
 }
 
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
@@ -232,15 +215,17 @@ void CaseCheck(Reader *r, const Case *c)
 {
   const bool *bad = r->bad;
 
+  CheckFields(r, c);
+  if (!bad[GROUP_CASE] && !bad[GROUP_STAGE])
+    CheckTimes(r, c);
   if (!bad[GROUP_CASE])
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++) {
     CheckMaterial(r, &c->scene, &c->scene.material[i]);
     CheckRate(r, &c->scene.material[i]);
-    CheckBeds(r, c, &c->scene.material[i]);
-  }
-  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckBeds(r, &c->scene, &c->scene.material[i]);
     CheckPlasticity(r, c, &c->scene.material[i]);
+  }
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])
     CheckReduction(r, c);
   for (int d = 0; d < CL_DIM; d++)

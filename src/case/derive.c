@@ -1,7 +1,6 @@
 /* derive: values that follow from the keys; all of them before stages copy the scene, and before anything is checked.
  */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,8 +114,10 @@ PetscErrorCode CaseDerivePlaces(Reader *r, Case *c)
     box = box && c->scene.upper[d] > c->scene.lower[d];
   if (!bad[GROUP_REGION])
     r->bad[GROUP_REGION] = r->misshapen = !ShapesGood(r, c);
-  if (box && !bad[GROUP_REGION])
+  if (box && !bad[GROUP_REGION]) {
     PetscCall(RegionsCut(r, c));
+    r->bad[GROUP_REGION] = !RegionsFilled(r, c);
+  }
   if (box && !bad[GROUP_REGION] && !bad[GROUP_MATERIAL] && !bad[GROUP_BC])
     PetscCall(DeriveWells(&c->scene));
   PetscFunctionReturn(PETSC_SUCCESS);

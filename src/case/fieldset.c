@@ -1,6 +1,5 @@
 /* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/skeleton.h"
 #include <stdlib.h>
 #include <string.h>
@@ -245,57 +244,58 @@ void FieldsWords(unsigned has, char text[64])
     strcat(strcat(text, text[0] ? " or " : ""), "hydrate");
 }
 
-static void FinishRegion(Reader *r, const Case *c, Region *g)
-{
-  const FieldSet *fs = &c->scene.fields;
-  char            option[256];
-
-  if (fs->phase[PHASE_G] || g->material < 0)
-    return;
-  if (g->Sw == 0.0 && g->Sg == 0.0 && fs->phase[PHASE_W])
-    g->Sw = 1.0 - g->Sh; /* a lone fluid fills the pores */
-  if (g->Sg != 0.0) {
-    KeyOption(option, sizeof option, GROUP_REGION, g->name, "Sg");
-    ReaderError(r, option, NULL, "is %g but gas is not among the fields of the scene (%s)", g->Sg, c->fields_wanted);
-  } else if (g->Sw != 0.0 && !fs->fluid) {
-    KeyOption(option, sizeof option, GROUP_REGION, g->name, "Sw");
-    ReaderError(r, option, NULL, "is %g but water is not among the fields of the scene (%s)", g->Sw, c->fields_wanted);
-  }
-}
-
 void CaseFieldSetFinish(Reader *r, Case *c)
 {
   const FieldSet *fs = &c->scene.fields;
-  char            option[256], words[64];
 
   for (PetscInt i = 0; i < c->scene.nmaterial && fs->solid; i++)
     c->scene.fields.has |= SkeletonHas(&c->scene.material[i]);
+  for (PetscInt i = 0; i < c->scene.nregion && !r->bad[GROUP_REGION]; i++) {
+    Region *g = &c->scene.region[i];
 
-  for (PetscInt i = 0; i < c->scene.nregion && !r->bad[GROUP_REGION]; i++)
-    FinishRegion(r, c, &c->scene.region[i]);
+    if (fs->phase[PHASE_W] && !fs->phase[PHASE_G] && g->material >= 0 && g->Sw == 0.0 && g->Sg == 0.0)
+      g->Sw = 1.0 - g->Sh; /* a lone fluid fills the pores */
+  }
+}
+
+static void CheckFluids(Reader *r, const Case *c, const Region *g)
+{
+  const FieldSet *fs = &c->scene.fields;
+
+  if (g->Sg != 0.0 && !fs->phase[PHASE_G])
+    FAIL_AT(GROUP_REGION, g->name, "Sg", "is %g but gas is not among the fields of the scene (%s)", g->Sg,
+            c->fields_wanted);
+  else if (g->Sw != 0.0 && !fs->fluid)
+    FAIL_AT(GROUP_REGION, g->name, "Sw", "is %g but water is not among the fields of the scene (%s)", g->Sw,
+            c->fields_wanted);
+}
+
+void CheckFields(Reader *r, const Case *c)
+{
+  const FieldSet *fs = &c->scene.fields;
+  char            words[64];
+
+  for (PetscInt i = 0; i < c->scene.nregion && !r->bad[GROUP_REGION]; i++) {
+    if (c->scene.region[i].material >= 0)
+      CheckFluids(r, c, &c->scene.region[i]);
+  }
   for (PetscInt i = 0; i < c->scene.nbc && !r->bad[GROUP_BC]; i++) {
-    const unsigned needs = cl_condition[c->scene.bc[i].type].has;
+    const Condition *kind = &cl_condition[c->scene.bc[i].type];
 
-    if (fs->has & needs)
-      continue;
-    FieldsWords(needs, words);
-    KeyOption(option, sizeof option, GROUP_BC, c->scene.bc[i].name, "type");
-    ReaderError(r, option, cl_condition[c->scene.bc[i].type].word,
-                "needs %s, which is not among the fields of the scene (%s)", words, c->fields_wanted);
+    FieldsWords(kind->has, words);
+    if (!(fs->has & kind->has))
+      FAIL_AT(GROUP_BC, c->scene.bc[i].name, "type", "%s needs %s, which is not among the fields of the scene (%s)",
+              kind->word, words, c->fields_wanted);
   }
   for (PetscInt i = 0; i < c->scene.nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
     const Material *m = &c->scene.material[i];
 
-    if (m->reacts && !fs->phase[PHASE_G]) {
-      KeyOption(option, sizeof option, GROUP_MATERIAL, m->name, "kinetics_active");
-      ReaderError(r, option, "yes", "needs water and gas among the fields of the scene (%s)", c->fields_wanted);
-    }
-    if (fs->solid && isinf(m->elasticity.E0)) {
-      KeyOption(option, sizeof option, GROUP_MATERIAL, m->name, "elasticity_E0");
-      ReaderError(r, option, "rigid",
-                  "but solid is among the fields of the scene (%s): give every material's E0, or leave "
-                  "solid out",
-                  c->fields_wanted);
-    }
+    if (m->reacts && !fs->phase[PHASE_G])
+      FAIL_AT(GROUP_MATERIAL, m->name, "kinetics_active", "yes needs water and gas among the fields of the scene (%s)",
+              c->fields_wanted);
+    if (fs->solid && isinf(m->elasticity.E0))
+      FAIL_AT(GROUP_MATERIAL, m->name, "elasticity_E0",
+              "is rigid but solid is among the fields of the scene (%s): give every material's E0, or leave solid out",
+              c->fields_wanted);
   }
 }

@@ -9,7 +9,6 @@
    On the command line -key_ramp "v0, v1, t0, t1" or -key "{ramp: [v0, v1, t0, t1]}".
    Before the first time the first value holds, after the last time the last. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>

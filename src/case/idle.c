@@ -10,10 +10,16 @@ void IntegratorsWords(unsigned by, char text[64])
   char *end = text;
 
   *text = '\0';
-  for (int i = 0; i < INTEGRATOR_COUNT; i++) {
-    if (by >> i & 1u)
+  for (Integrator i = 0; i < INTEGRATOR_COUNT; i++) {
+    if (by & IntegratorKinds(i))
       end += snprintf(end, 64 - (size_t)(end - text), "%s%s", end > text ? ", " : "", case_integrator[i]);
   }
+}
+
+/* auto takes no steps of hybrid where hybrid does not know the scene. */
+static bool Knows(const Case *c, unsigned by)
+{
+  return by & IntegratorKinds(c->integrator) & (CaseNeedsImplicit(c) ? ~(unsigned)BY_EXPLICIT : ~0u);
 }
 
 bool KeyKnown(const Key *k, Group g, const Case *c, const void *instance)
@@ -21,23 +27,25 @@ bool KeyKnown(const Key *k, Group g, const Case *c, const void *instance)
   bool known = !k->by;
 
   if (g == GROUP_STAGE)
-    return known || (k->by >> ((const CaseStage *)instance)->c.integrator & 1u);
+    return known || Knows(&((const CaseStage *)instance)->c, k->by);
   for (PetscInt i = 0; i < PetscMax(c->nstage, 1); i++)
-    known = known || (k->by >> CaseInStage(c, i)->integrator & 1u);
+    known = known || Knows(CaseInStage(c, i), k->by);
   return known;
 }
 
 /* Why a key does nothing. */
-static void Why(const Key *k, const Scene *c, bool known, char why[CASE_WHY])
+static void Why(const Key *k, const Case *c, bool known, char why[CASE_WHY])
 {
-  const unsigned lacks = k->has && !(c->fields.has & k->has)     ? k->has
-                         : k->also && !(c->fields.has & k->also) ? k->also
-                                                                 : 0;
+  const unsigned has   = c->scene.fields.has;
+  const unsigned lacks = k->has && !(has & k->has) ? k->has : k->also && !(has & k->also) ? k->also : 0;
   char           words[64];
 
   if (!known) {
+    const char *hybrid = k->by & IntegratorKinds(c->integrator) ? CaseNeedsImplicit(c) : NULL;
+
     IntegratorsWords(k->by, words);
-    snprintf(why, CASE_WHY, "it acts with %s", words);
+    snprintf(why, CASE_WHY, "it acts with %s%s%s", words, hybrid ? "; hybrid does not know " : "",
+             hybrid ? hybrid : "");
   } else if (lacks) {
     FieldsWords(lacks, words);
     snprintf(why, CASE_WHY, "no %s", words);
@@ -47,13 +55,20 @@ static void Why(const Key *k, const Scene *c, bool known, char why[CASE_WHY])
 
 PetscErrorCode CaseIdle(Reader *r, const Case *c)
 {
-  char    *text, why[CASE_WHY];
+  static const Key newton = {.by = BY_IMPLICIT}; /* each of the options of Newton's method */
+
+  char    *text, *all, why[CASE_WHY];
   size_t   size;
   FILE    *f = open_memstream(&text, &size);
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  IntegratorsWords(newton.by, why);
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (const char *at = all; !KeyKnown(&newton, GROUP_CASE, c, NULL) && (at = strstr(at, "-newton_")); at++)
+    fprintf(f, "%s%.*s (it acts with %s)", n++ ? ", " : "", (int)strcspn(at, " "), at, why);
+  PetscCall(PetscFree(all));
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     for (PetscInt i = 0; i < (g == GROUP_CASE ? 1 : *GroupCount(c, g)); i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {
@@ -66,7 +81,7 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c)
         PetscCall(KeyFind(r, c, g, i, k, &at));
         if (!at.found || !at.own)
           continue;
-        Why(k, &c->scene, known, why);
+        Why(k, c, known, why);
         if (n++ < SHOWN)
           fprintf(f, "%s%s (%s)", n > 1 ? ", " : "", at.shown, why);
       }

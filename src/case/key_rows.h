@@ -2,7 +2,6 @@
 #pragma once
 
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <stddef.h>
 
 /* A default for every axis, and how an example of such a list is written. */
@@ -54,8 +53,8 @@
 #define ACTS(condition, words) .acts = condition, .idle = words
 /* what particles hold means something else with another value, where there are any of these fields */
 #define BINDS(fields) .binds = fields
-/* known to these integrators alone */
-#define BY(integrators) .by = integrators
+/* known to these kinds of integrators alone */
+#define BY(kinds) .by = BY_##kinds
 #define OFLAW(condition, words) WHEN(condition, words), ACTS(condition, words)
 
 /* Rows, ended by one without a name. */

@@ -32,14 +32,8 @@ static const char *const ice_word[]         = {"warn", "stop", NULL};      /* IC
 static const char *const leaving_word[]     = {"stop", "remove", NULL};    /* LEAVING_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL}; /* WITHOUT_GAS_... */
 
-const char *const case_integrator[INTEGRATOR_COUNT + 1] = {
-    [INTEGRATOR_SDIRK2]   = "sdirk2",       /* two stages, second order */
-    [INTEGRATOR_EULER]    = "euler",        /* backward, first order */
-    [INTEGRATOR_HYBRID]   = "hybrid",       /* explicit motion, implicit drag and reaction */
-    [INTEGRATOR_EXPLICIT] = "explicit",     /* ... and explicit drag */
-    [INTEGRATOR_PAPER]    = "hybrid_paper", /* the paper's bare form of hybrid */
-    [INTEGRATOR_AUTO]     = "auto",         /* the cheaper of sdirk2 and hybrid */
-};
+#define WORD(name, word, ...) word,
+const char *const case_integrator[INTEGRATOR_COUNT + 1] = {CL_INTEGRATORS(WORD)};
 
 const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
@@ -80,7 +74,8 @@ const Key case_key[] = {
            "(sdirk2, euler)"),
     REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
          "share of the cell's mean motion in a particle's strain (160), against locking; 1 leaves hourglass modes, "
-         "0.95 does for collapse loads"),
+         "0.95 does for collapse loads",
+         BY(ALL_BUT_PAPER)),
     REALS(Case, CL_DIM, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", EACH("0 m/s^2"),
           "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", scene.gravity_ramp, "s", "[0,inf)", "0 s",
@@ -111,25 +106,24 @@ const Key case_key[] = {
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
          .plain = true),
     REAL(Case, "stepper_dt_min", dt_min, "s", "(0,inf)", "1e-9 @time_end", "a smaller step ends the run", .plain = true,
-         BY(INTEGRATORS_IMPLICIT)),
+         BY(IMPLICIT)),
     REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
-    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate",
-         BY(INTEGRATORS_IMPLICIT)),
+    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate", BY(IMPLICIT)),
     REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
          "n of the mean of the error over the particles: 2 is the root mean square; 8 sees a front in a small part of "
          "the body",
-         BY(INTEGRATORS_IMPLICIT)),
+         BY(IMPLICIT)),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
-    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "step as a share of the stable one", BY(INTEGRATORS_EXPLICIT)),
+    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "step as a share of the stable one", BY(STABLE_STEPS)),
     BOOLEAN(Case, "stepper_force_dt", force_dt, "no", "take a fixed step above the stable one all the same",
-            BY(INTEGRATORS_EXPLICIT)),
+            BY(STABLE_STEPS)),
     REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
-         "share of the out-of-balance force that acts against motion, for quasi-static ends", BY(INTEGRATORS_EXPLICIT)),
+         "share of the out-of-balance force that acts against motion, for quasi-static ends", BY(STABLE_STEPS)),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
-         "factor on all inertia; the error it makes is reported", BY(INTEGRATORS_EXPLICIT)),
+         "factor on all inertia; the error it makes is reported", BY(STABLE_STEPS)),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
-         "at free surfaces; 0 = off", BY(INTEGRATORS_IMPLICIT)),
+         "at free surfaces; 0 = off", BY(IMPLICIT)),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes upstream: for sand with gas beside clay"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
@@ -176,19 +170,18 @@ const Key stage_key[] = {
     REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
          .plain = true, .kept = true),
     REAL(CaseStage, "stepper_dt_min", c.dt_min, "s", "(0,inf)", CASES_LENGTH, "a smaller step ends the run",
-         .plain = true, .kept = true, BY(INTEGRATORS_IMPLICIT)),
+         .plain = true, .kept = true, BY(IMPLICIT)),
     REAL(CaseStage, "stepper_dt_max", c.dt_max, "s", "(0,inf)", CASES_LENGTH, "longest step", .plain = true,
          .kept = true),
     REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true,
-         BY(INTEGRATORS_IMPLICIT)),
+         BY(IMPLICIT)),
     REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "step as a share of the stable one", .kept = true,
-         BY(INTEGRATORS_EXPLICIT)),
+         BY(STABLE_STEPS)),
     BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES, "take a fixed step above the stable one all the same",
-            .kept = true, BY(INTEGRATORS_EXPLICIT)),
-    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "local damping", .kept = true,
-         BY(INTEGRATORS_EXPLICIT)),
+            .kept = true, BY(STABLE_STEPS)),
+    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "local damping", .kept = true, BY(STABLE_STEPS)),
     REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES, "factor on all inertia",
-         .kept = true, BY(INTEGRATORS_EXPLICIT)),
+         .kept = true, BY(STABLE_STEPS)),
     REAL(CaseStage, "output_every", c.every, "s", "[0,inf)", CASES, "snapshots, counted from the begin of the stage",
          .kept = true),
     REAL(CaseStage, "output_probe_every", c.probe_every, "s", "[0,inf)", CASES,

@@ -219,7 +219,7 @@ static PetscErrorCode Cut(const Reader *r, Case *c, PetscInt i, PetscInt j)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode RegionsCut(Reader *r, Case *c)
+PetscErrorCode RegionsCut(const Reader *r, Case *c)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->scene.nregion; i++) {
@@ -228,6 +228,13 @@ PetscErrorCode RegionsCut(Reader *r, Case *c)
         PetscCall(Cut(r, c, i, j));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+bool RegionsFilled(Reader *r, const Case *c)
+{
+  bool filled = true;
+
   for (PetscInt i = 0; i < c->scene.nregion; i++) {
     const Region *g = &c->scene.region[i];
 
@@ -235,9 +242,9 @@ PetscErrorCode RegionsCut(Reader *r, Case *c)
       continue;
     FAIL_AT(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
             "the region keeps no particle: no centre of one lies inside");
-    r->bad[GROUP_REGION] = true;
+    filled = false;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return filled;
 }
 
 /* ---------------------------------------------------------------- faces */

@@ -1,7 +1,6 @@
 /* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
    prints the table itself. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* stages: the case as it holds in each stage of a run.  All of it is made when the case is read; a run only looks. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,49 +38,40 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
     ReaderError(r, key, NULL, "in stage %s: %s", stage, what);
 }
 
-/* What an integrator without matrices cannot do. */
-static void CheckLocal(Reader *r, const Case *c, const char *stage)
+#define FAIL_STAGE(stage, key, ...)                                                                                    \
+  do {                                                                                                                 \
+    char what_[CASE_WHY];                                                                                              \
+    snprintf(what_, sizeof what_, __VA_ARGS__);                                                                        \
+    Fail(r, stage, key, what_);                                                                                        \
+  } while (0)
+
+/* What the case asks for and its integrator does not know. */
+static void CheckIntegrator(Reader *r, const Case *c, const char *stage)
 {
-  const Bc   *b       = SceneBcNeedsMatrix(&c->scene);
-  const char *unknown = CaseNeedsImplicit(c);
-  char        what[CASE_WHY];
+  const Bc   *b       = SceneBcUnknown(&c->scene, IntegratorKinds(c->integrator));
+  const char *unknown = SceneUnknown(&c->scene, IntegratorKinds(c->integrator)), *word = case_integrator[c->integrator];
 
-  if (b) {
-    char option[256];
-
-    KeyOption(option, sizeof option, GROUP_BC, b->name, "type");
-    ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
-                stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", case_integrator[c->integrator],
-                cl_condition[b->type].word);
-    return;
-  }
-  if (unknown) {
-    snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", case_integrator[c->integrator], unknown);
-    Fail(r, stage, "stepper_type", what);
-  }
+  if (b)
+    FAIL_AT(GROUP_BC, b->name, "type", "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
+            stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", word, cl_condition[b->type].word);
+  else if (unknown)
+    FAIL_STAGE(stage, "stepper_type", "%s does not know %s; use sdirk2 or euler", word, unknown);
 }
 
-void CheckTimes(Reader *r, const Case *c, const char *stage)
+static void CheckSteps(Reader *r, const Case *c, const char *stage)
 {
-  const bool local = !(INTEGRATORS_IMPLICIT >> c->integrator & 1u);
-  char       what[CASE_WHY];
+  const bool local = !(IntegratorKinds(c->integrator) & BY_IMPLICIT);
 
-  if (local)
-    CheckLocal(r, c, stage);
-  if (local && c->dt > c->dt_max) {
-    snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
-    Fail(r, stage, "stepper_dt", what);
-  }
-  if (!local && (c->dt_min > c->dt || c->dt > c->dt_max)) {
-    snprintf(what, sizeof what, "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)",
-             c->dt_min, c->dt, c->dt_max);
-    Fail(r, stage, "stepper_dt", what);
-  }
-  if (c->scene.axisymmetric && c->scene.gravity[0] != 0.0) {
-    snprintf(what, sizeof what, "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
-             c->scene.gravity[0]);
-    Fail(r, stage, "gravity", what);
-  }
+  if (!r->bad[GROUP_MATERIAL] && !r->bad[GROUP_REGION] && !r->bad[GROUP_BC])
+    CheckIntegrator(r, c, stage);
+  if (local && c->dt > c->dt_max)
+    FAIL_STAGE(stage, "stepper_dt", "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
+  if (!local && (c->dt_min > c->dt || c->dt > c->dt_max))
+    FAIL_STAGE(stage, "stepper_dt", "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)",
+               c->dt_min, c->dt, c->dt_max);
+  if (c->scene.axisymmetric && c->scene.gravity[0] != 0.0)
+    FAIL_STAGE(stage, "gravity", "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
+               c->scene.gravity[0]);
 }
 
 PetscErrorCode CaseStageEnds(Reader *r, Case *c)
@@ -140,20 +130,12 @@ static PetscErrorCode StageKeys(Reader *r, Case *c, PetscInt i)
 /* Index of a name among those of a group, -1 and an error if it is not there. */
 static PetscInt Find(Reader *r, const Case *c, const CaseStage *s, const char *key, Group g, const char *name)
 {
-  const char *word[258], *best;
-  char        nearest[64];
-  PetscInt    n = 0;
+  const Key names = {.kind = KEY_NAMES, .names = g};
+  char      option[256];
+  PetscInt  i;
 
-  for (; n < *GroupCount(c, g) && n < 256; n++) {
-    word[n] = GroupInstance(c, g, n);
-    if (!strcasecmp(name, word[n]))
-      return n;
-  }
-  word[n] = NULL;
-  best    = WordNearest(name, word, nearest, sizeof nearest) ? nearest : NULL;
-  FAIL(s, key, "there is no %s '%s'%s%s%s", case_group[g].noun, name, best ? "; did you mean " : "", best ? best : "",
-       best ? "?" : "");
-  return -1;
+  KeyOption(option, sizeof option, GROUP_STAGE, s->name, key);
+  return KeyName(r, c, option, name, &names, &i) ? i : -1;
 }
 
 static void MarkNames(Reader *r, const Case *c, const CaseStage *s, const char *key, const char *names, bool *marked)
@@ -249,30 +231,13 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
 }
 
 /* ---------------------------------------------------------------- all of it */
-static void StageGravity(Reader *r, const Case *before, bool last, CaseStage *s)
-{
-  bool changes = false;
-
-  for (int d = 0; d < CL_DIM; d++) {
-    s->c.scene.gravity_before[d] = before ? before->scene.gravity[d] : 0.0;
-    changes                      = changes || s->c.scene.gravity_before[d] != s->c.scene.gravity[d];
-  }
-  if (changes && !last && s->c.scene.gravity_ramp > s->c.t_end - s->c.scene.t_begin)
-    Fail(r, s->name, "gravity_ramp",
-         "must not be longer than the stage, in which gravity changes, where another one follows");
-}
-
 PetscErrorCode CaseStages(Reader *r, Case *c)
 {
   const PetscInt before = r->nerror;
 
   PetscFunctionBeginUser;
-  if (c->nstage && c->t_end != c->stage[c->nstage - 1].end && !r->bad[GROUP_STAGE] && !r->bad[GROUP_CASE])
-    ReaderError(r, "time_end", NULL, "is %g s but the last stage, %s, ends at %g s; leave it out", c->t_end,
-                c->stage[c->nstage - 1].name, c->stage[c->nstage - 1].end);
   for (PetscInt i = 0; i < c->nstage; i++) {
-    CaseStage     *s      = &c->stage[i];
-    const PetscInt errors = r->nerror;
+    CaseStage *s = &c->stage[i];
 
     s->c               = *c;
     s->c.scene.t_begin = i ? c->stage[i - 1].end : 0.0;
@@ -281,13 +246,38 @@ PetscErrorCode CaseStages(Reader *r, Case *c)
     s->c.scene.fields.inertia = s->c.scene.inertia;
     PetscCall(StageMaterials(r, c, s));
     PetscCall(StageBoundaries(r, c, s));
-    if (r->nerror > errors || r->bad[GROUP_CASE] || r->bad[GROUP_STAGE])
-      continue;
-    StageGravity(r, i ? &c->stage[i - 1].c : NULL, i + 1 == c->nstage, s);
-    CheckTimes(r, &s->c, s->name);
+    for (int d = 0; d < CL_DIM; d++)
+      s->c.scene.gravity_before[d] = i ? c->stage[i - 1].c.scene.gravity[d] : 0.0;
   }
   r->bad[GROUP_STAGE] = r->bad[GROUP_STAGE] || r->nerror > before;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void CheckRamp(Reader *r, const CaseStage *s)
+{
+  bool changes = false;
+
+  for (int d = 0; d < CL_DIM; d++)
+    changes = changes || s->c.scene.gravity_before[d] != s->c.scene.gravity[d];
+  if (changes && s->c.scene.gravity_ramp > s->c.t_end - s->c.scene.t_begin)
+    Fail(r, s->name, "gravity_ramp",
+         "must not be longer than the stage, in which gravity changes, where another one follows");
+}
+
+void CheckTimes(Reader *r, const Case *c)
+{
+  const CaseStage *last = c->nstage ? &c->stage[c->nstage - 1] : NULL;
+
+  if (!last)
+    CheckSteps(r, c, NULL);
+  else if (c->t_end != last->end)
+    ReaderError(r, "time_end", NULL, "is %g s but the last stage, %s, ends at %g s; leave it out", c->t_end, last->name,
+                last->end);
+  for (const CaseStage *s = c->stage; last && s <= last; s++) {
+    if (s < last)
+      CheckRamp(r, s);
+    CheckSteps(r, &s->c, s->name);
+  }
 }
 
 PetscErrorCode CaseStagesDestroy(Case *c)

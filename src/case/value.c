@@ -1,6 +1,5 @@
 /* value: reads one key of the table into its place, by kind. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* wells: keys of a well that must agree with each other, with the grid and with the body. */
 #include "case_private.h"
-#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
 
@@ -86,8 +85,6 @@ void CheckWell(Reader *r, const Case *c, const Bc *b)
   CheckField(r, &c->scene, b, "inflow_temperature", HAS_HEAT, b->heated.n);
   if (c->scene.axisymmetric)
     FAIL(b, "type", "well is a line normal to the plane; about an axis a well is a pressure on side: left");
-  else if (c->integrator == INTEGRATOR_PAPER)
-    FAIL(b, "type", "well is not known to hybrid_paper");
   else if (!WellRuns(&c->scene, b))
     FAIL(b, "end", "must differ from at, %s, along one axis: a well runs along it, open between the two",
          PlaceWords(b->at).s);

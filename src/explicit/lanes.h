@@ -374,8 +374,7 @@ void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])
 PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
-/* Is storage consistent as far as the stable step has room for it (413)?  Not in the bare form, which is the paper's.
- */
+/* Does (413) correct lumped storage?  Not in the bare form, which is the paper's. */
 INLINE bool Corrects(const Explicit *e)
 {
   return e->set.fluids > 0 && !e->o.paper;

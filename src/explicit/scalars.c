@@ -147,39 +147,29 @@ static PetscErrorCode Solve(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (413): what lumped storage has given a node of its particles' part beyond their own, to the rows. */
-static PetscErrorCode LackOfMass(Explicit *e)
+/* (413): solves for what lumped storage has given nodes of their particles' part beyond the particles' own. */
+static PetscErrorCode Correct(Explicit *e)
 {
   const Set s = e->set;
-  const int n = Scalars(s), width = LANES * Rows(R_Count(s));
+  const int n = Scalars(s), width = C_Width(s);
 
   PetscFunctionBeginUser;
-  PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(s)));
+  PetscCall(NodeMapBroadcast(&e->map, e->C, width));
   PetscCall(PetscArrayzero(e->given, e->rows * LANES));
   Stored(e);
   PetscCall(NodeMapSum(&e->map, e->given, LANES));
-  for (PetscInt I = 0; I < e->map.n_local; I++) {
-    const double *stored = &e->given[I * LANES], *d = &e->C[I * C_Width(s)];
-    double       *r = &e->R[I * width];
+  for (PetscInt I = 0; I < e->rows; I++) {
+    const double *stored = &e->given[I * LANES], *d = &e->C[I * width];
+    double       *r = &e->R[I * LANES * Rows(R_Count(s))];
 
-    for (int k = 0; k < n; k++) {
-      r[k] = 0.0;
-      for (int j = 0; k < s.fluids && j < s.fluids; j++)
+    PetscCall(PetscArraycpy(&e->first[I * LANES], d, n));
+    PetscCall(PetscArrayzero(r, n));
+    for (int k = 0; k < s.fluids; k++) {
+      r[k] = -stored[k];
+      for (int j = 0; j < s.fluids; j++)
         r[k] += stored[Stored_Matrix(s) + k * s.fluids + j] * d[j];
-      r[k] -= k < s.fluids ? stored[k] : 0.0;
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Correct(Explicit *e)
-{
-  const int n = Scalars(e->set), width = C_Width(e->set);
-
-  PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < e->rows; I++)
-    PetscCall(PetscArraycpy(&e->first[I * LANES], &e->C[I * width], n));
-  PetscCall(LackOfMass(e));
   e->again = true;
   PetscCall(Solve(e));
   e->again = false;

@@ -40,12 +40,12 @@ PetscErrorCode FindingsFindPaperLayers(Findings *f, FindingId id)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < PetscMax(f->c->nstage, 1); k++) {
     const Case  *c        = CaseInStage(f->c, k);
-    const double contrast = c->integrator == INTEGRATOR_PAPER ? SceneContrast(&c->scene) : 1.0;
+    const double contrast = IntegratorKinds(c->integrator) == BY_PAPER ? SceneContrast(&c->scene) : 1.0;
 
     if (contrast > LAYERED)
       SAY("permeability of the regions differs by a factor of %.3g: in the paper's form the least permeable material "
           "at a node holds all of its fluid, so that what flows along a layer is too little by what flows through "
-          "about a cell of it; implicit steps have no such error",
+          "about a cell of it",
           contrast);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

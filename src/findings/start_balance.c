@@ -89,8 +89,7 @@ PetscErrorCode FindingsFindTornPores(Findings *f, FindingId id)
     if (beyond < E || !Pushed(c, E))
       continue;
     SAY("the pores of region %s bear %s, %.3g times its stiffness, against tractions on its faces: what the two differ "
-        "by, as faces move, may tear it apart; let ambient: {pressure: ...} bear what they have in common, and give "
-        "tractions beyond it",
+        "by, as faces move, may tear it apart",
         r->name, PressureWords(beyond, 3).s, beyond / E);
     break;
   }
@@ -154,8 +153,8 @@ static void Balanced(const Scene *c, const Region *r[2], const double pc[2], cha
     snprintf(text, BALANCED, "Sg: 0 in both or neither");
   else
     snprintf(text, BALANCED,
-             "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas share Sg/(1 - "
-             "Sh) in both, though the finer may not have so much",
+             "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; the same p0 and gas share Sg/(1 - Sh) "
+             "in both, though the finer may not have so much",
              ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name);
 }
 
@@ -179,10 +178,11 @@ static PetscErrorCode FindJump(const Findings *f, FindingId id, PetscInt a, Pets
     PetscFunctionReturn(PETSC_SUCCESS);
   Balanced(c, r, pc, balanced);
   *found = true;
-  SAY("regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
-      "at once, the faster the larger their permeability (in balance: %s)",
-      r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
-      r[1]->Sg == 0.0 ? " (no gas)" : "", balanced);
+  SAY_TRY(balanced,
+          "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between "
+          "them at once, the faster the larger their permeability",
+          r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
+          r[1]->Sg == 0.0 ? " (no gas)" : "");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,8 +222,7 @@ PetscErrorCode FindingsFindTrappedGas(Findings *f, FindingId id)
     if (s.pg >= s.pw)
       continue;
     SAY("gas starts below its residual share: region_%s_Sg = %.4g and region_%s_Sh = %.4g are Sg/(1 - Sh) = %.4g of "
-        "the open pores, mat_%s_retention_Sgr is %.4g: it counts as trapped and compressed, with p_g %s below p_w "
-        "(more Sg or a smaller Sgr starts with gas that water has not trapped, Sg: 0 without)",
+        "the open pores, mat_%s_retention_Sgr is %.4g: it counts as trapped and compressed, with p_g %s below p_w",
         r->name, r->Sg, r->name, r->Sh, share, m->name, m->retention.Sgr, PressureWords(s.pw - s.pg, 3).s);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -247,8 +246,7 @@ PetscErrorCode FindingsFindUnstressed(Findings *f, FindingId id)
     if (!unstressed)
       continue;
     SAY("gravity acts on an unstressed body: region %s starts without the stress that carries its weight, %s from top "
-        "to foot, and will move, by some %.3g m held at its sides (stress: {geostatic: K0} gives it one, gravity_ramp "
-        "lets the weight grow, -restart_as_initial begins with a body that has settled)",
+        "to foot, and will move, by some %.3g m held at its sides",
         c->region[k].name, PressureWords(weight, 3).s, sinks);
     break;
   }

@@ -30,6 +30,8 @@ static bool HoldsLine(const Bc *b, int axis, double at)
 
 static PetscErrorCode FindClosed(const Findings *f, FindingId id, const Scene *c)
 {
+  char advice[128];
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *face = &c->bc[k];
@@ -44,9 +46,11 @@ static PetscErrorCode FindClosed(const Findings *f, FindingId id, const Scene *c
 
       if (line->drained || !HoldsLine(line, axis, at))
         continue;
-      SAY("boundary %s holds water and gas, too, at %c = %g m, and closes the faces of boundary %s, which lie there: "
-          "nothing flows through them.  bc_%s_holds: skeleton lets the fluids cross",
-          line->name, 'x' + axis, line->position, face->name, line->name);
+      snprintf(advice, sizeof(advice), "bc_%s_holds: skeleton, which lets the fluids cross", line->name);
+      SAY_TRY(advice,
+              "boundary %s holds water and gas, too, at %c = %g m, and closes the faces of boundary %s, which lie "
+              "there: nothing flows through them",
+              line->name, 'x' + axis, line->position, face->name);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,6 +109,7 @@ PetscErrorCode FindingsFindFreeSides(Findings *f, FindingId id)
 {
   const Scene *c   = f->s->model->c;
   const bool   sea = AmbientOf(c, c->t_begin, c->gravity).on || c->ambient_pressure.n > 1;
+  char         advice[128];
 
   PetscFunctionBeginUser;
   for (int side = 0; side < SIDE_COUNT && c->fields.solid && c->fields.fluid && !sea; side++) {
@@ -116,10 +121,11 @@ PetscErrorCode FindingsFindFreeSides(Findings *f, FindingId id)
     PetscCall(Swells(c, side, at, &strain, &pressure));
     if (!(strain > SWELLS))
       continue;
-    SAY("nothing bears the pore pressure of %.3g MPa at the body's %s, which is free of total stress as long as no "
-        "traction, plate, roller or ambient pressure acts there: its skeleton swells by some %.2g %% (type: traction, "
-        "side: %s, normal: %.4g MPa keeps it)",
-        1e-6 * pressure, cl_side[side], 100.0 * strain, cl_side[side], 1e-6 * pressure);
+    snprintf(advice, sizeof(advice), "type: traction, side: %s, normal: %.4g MPa", cl_side[side], 1e-6 * pressure);
+    SAY_TRY(advice,
+            "nothing bears the pore pressure of %.3g MPa at the body's %s, which is free of total stress as long as no "
+            "traction, plate, roller or ambient pressure acts there: its skeleton swells by some %.2g %%",
+            1e-6 * pressure, cl_side[side], 100.0 * strain);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -107,8 +107,7 @@ PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
   if (!FarApart(&w, apart))
     PetscFunctionReturn(PETSC_SUCCESS);
   SAY("the pore pressure starts far from hydrostatic: region %s at %s has %s more beyond water at rest than region %s "
-      "at %s, and the water weighs %s from top to foot: it will flow from the start (hydrostatic: yes with one datum, "
-      "or -restart_as_initial of a run that came to rest, starts in balance)",
+      "at %s, and the water weighs %s from top to foot: it will flow from the start",
       c->region[high.region].name, PlaceWords(high.x).s, PressureWords(apart, 3).s, c->region[low.region].name,
       PlaceWords(low.x).s, PressureWords(w.weight, 3).s);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -217,9 +216,7 @@ PetscErrorCode FindingsFindRisingGas(Findings *f, FindingId id)
     if (!FarApart(&w, apart))
       continue;
     SAY("gas starts out of balance with gravity: in region %s it has %s more at %s than gas at rest would, seen from "
-        "%s, and moves there from the start, by up to some %.2g m a day (a gas share Sg/(1 - Sh) at which it has no "
-        "relative permeability, layers with the more gas the higher they lie, or -restart_as_initial of a run that "
-        "came to rest, starts in balance)",
+        "%s, and moves there from the start, by up to some %.2g m a day",
         c->region[k].name, PressureWords(apart, 3).s, PlaceWords(b.high.x).s, PlaceWords(b.low.x).s,
         b.fastest * apart / away * DAY);
     break;
@@ -255,8 +252,7 @@ PetscErrorCode FindingsFindUnstableHydrate(Findings *f, FindingId id)
   const Equilibrium *law = &c->material[c->region[worst.region].material].kinetics.equilibrium;
 
   SAY("hydrate starts outside its stability zone, %.3g %% of it; most in region %s at %s: at %.4g degC it needs %s and "
-      "has %s, where it is stable up to %.4g degC: it dissociates from the start (more pressure, a lower temperature, "
-      "or a first stage with kinetics_active: no)",
+      "has %s, where it is stable up to %.4g degC: it dissociates from the start",
       100.0 * mass[0] / mass[1], c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s,
       EquilibriumTemperature(law, worst.p));
@@ -321,9 +317,8 @@ PetscErrorCode FindingsFindForming(Findings *f, FindingId id)
       "are %s, up to %.4g degC: %s",
       c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value,
-      own ? "gas and water turn into hydrate from the start (Sg: 0, less pressure or a higher temperature starts in "
-            "balance, or a first stage with kinetics_active: no)"
+      own ? "gas and water turn into hydrate from the start"
           : "nothing forms in it, for its material has no reaction, but where it comes to sediment that has one it "
-            "does, from the start if they touch (in balance: Sg: 0, or below the stability zone)");
+            "does, from the start if they touch");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -220,19 +220,18 @@ static PetscErrorCode Transfer(hid_t where, hid_t *transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
-                           const char *unit, bool keep)
+PetscErrorCode H5WritePart(hid_t where, const char *name, const H5Part *part, const H5Values *values, bool keep)
 {
   hid_t memory, space, create, transfer = H5P_DEFAULT, set;
 
   PetscFunctionBeginUser;
-  PetscCall(Layout(type, part, nc, keep, &create));
-  PetscCall(Spaces(part, nc, &memory, &space));
+  PetscCall(Layout(values->type, part, values->nc, keep, &create));
+  PetscCall(Spaces(part, values->nc, &memory, &space));
   PetscCall(Transfer(where, &transfer));
-  H5Check(set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
-  H5Check(H5Dwrite(set, type, memory, space, transfer, data));
-  if (unit)
-    PetscCall(H5WriteText(set, "unit", unit));
+  H5Check(set = H5Dcreate2(where, name, values->type, space, H5P_DEFAULT, create, H5P_DEFAULT));
+  H5Check(H5Dwrite(set, values->type, memory, space, transfer, values->data));
+  if (values->unit)
+    PetscCall(H5WriteText(set, "unit", values->unit));
   H5Check(H5Dclose(set));
   H5Check(H5Pclose(transfer));
   H5Check(H5Sclose(space));
@@ -252,7 +251,7 @@ PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, hsize_t n, con
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   if (shared && rank > 0)
     part.count[0] = 0;
-  PetscCall(H5WritePart(where, name, type, &part, 1, data, unit, false));
+  PetscCall(H5WritePart(where, name, &part, &(H5Values){type, 1, data, unit}, false));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

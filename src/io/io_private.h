@@ -170,11 +170,15 @@ typedef struct {
   int     nd;
   hsize_t all[CL_DIM], start[CL_DIM], count[CL_DIM];
 } H5Part;
-/* nc components an entry, those of one as the last axis; unit NULL: none; keep: in a file that
-   readers see, with checksums, compressed when large.
-   Collective if the file is. */
-PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
-                           const char *unit, bool keep);
+/* What is written there: nc components an entry, those of one as the last axis; unit NULL: none. */
+typedef struct {
+  hid_t       type;
+  int         nc;
+  const void *data;
+  const char *unit;
+} H5Values;
+/* keep: in a file that readers see, with checksums, compressed when large.  Collective if the file is. */
+PetscErrorCode H5WritePart(hid_t where, const char *name, const H5Part *part, const H5Values *values, bool keep);
 /* Most bytes of n such datasets of `components` reals an entry in all, whole chunks and what describes them included.
  */
 size_t H5Room(const H5Part *part, int n, int components);

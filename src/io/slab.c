@@ -154,14 +154,14 @@ PetscErrorCode SlabInts(Slab *s, const PetscInt *local)
 PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool keep)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5WritePart(group, name, H5T_NATIVE_DOUBLE, &s->part, nc, s->data, unit, keep));
+  PetscCall(H5WritePart(group, name, &s->part, &(H5Values){H5T_NATIVE_DOUBLE, nc, s->data, unit}, keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool keep)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5WritePart(group, name, H5_INT, &s->part, 1, s->data, unit, keep));
+  PetscCall(H5WritePart(group, name, &s->part, &(H5Values){H5_INT, 1, s->data, unit}, keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

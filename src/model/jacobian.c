@@ -40,10 +40,16 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
   }
 }
 
+/* Of a particle's outputs in the unknowns of its nodes, so many in all. */
+typedef struct {
+  double of[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
+  int    length;
+} OutputSlopes;
+
 /* Adds `expression` of node a, of each of them, times the slopes DB of an output to a row. */
 #define TERM(output, expression)                                                                                       \
   do {                                                                                                                 \
-    double *factor = RowSumAdd(&sum, DB[output]);                                                                      \
+    double *factor = RowSumAdd(&sum, DB->of[output]);                                                                  \
     for (int a = 0; a < r->n; a++)                                                                                     \
       factor[a] = (expression);                                                                                        \
   } while (0)
@@ -56,8 +62,8 @@ static void RowOfNodes(Patch *patch, int k, int n, double *row[CL_NODES])
 }
 
 /* Rows of the nodes against the slopes DB of the outputs in the unknowns of all of them. */
-static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
-                      const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k, const OutputSlopes *DB,
+                      Patch *patch)
 {
   const double *S = r->S;
   RowSum        sum;
@@ -83,12 +89,11 @@ static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const 
         TERM(OUT_HOOP, r->B[a][i]);
     }
     RowOfNodes(patch, PlaceVs(&to->fs) + i, r->n, row);
-    RowSumInto(&sum, r->n, length, patch->fresh, row);
+    RowSumInto(&sum, r->n, DB->length, patch->fresh, row);
   }
 }
 
-static void MassRows(const Model *m, const Assembly *to, const Reach *r, const double DB[OUT_COUNT][ROW_MOST],
-                     int length, Patch *patch)
+static void MassRows(const Model *m, const Assembly *to, const Reach *r, const OutputSlopes *DB, Patch *patch)
 {
   const FieldSet *fs = &to->fs;
   const double   *S = r->S, dt = m->stage.dt;
@@ -102,13 +107,13 @@ static void MassRows(const Model *m, const Assembly *to, const Reach *r, const d
     for (int j = 0; j < CL_DIM; j++)
       TERM(VectorAt(OUT_FLUX, f, j), -dt * r->G[a][j]);
     RowOfNodes(patch, PlaceP(fs, f), r->n, row);
-    RowSumInto(&sum, r->n, length, patch->fresh, row);
+    RowSumInto(&sum, r->n, DB->length, patch->fresh, row);
     sum.n = 0;
   }
 }
 
 static void MomentumRows(const Model *m, const Assembly *to, const Reach *r, int f, const NodeFactors *k,
-                         const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+                         const OutputSlopes *DB, Patch *patch)
 {
   RowSum  sum;
   double *row[CL_NODES];
@@ -121,12 +126,11 @@ static void MomentumRows(const Model *m, const Assembly *to, const Reach *r, int
     if (m->fluid)
       TERM(OUT_ROOT + f, k[a].rise[f][i]);
     RowOfNodes(patch, PlaceV(&to->fs, f) + i, r->n, row);
-    RowSumInto(&sum, r->n, length, patch->fresh, row);
+    RowSumInto(&sum, r->n, DB->length, patch->fresh, row);
   }
 }
 
-static void HeatRows(const Assembly *to, const Reach *r, const NodeFactors *k, const double DB[OUT_COUNT][ROW_MOST],
-                     int length, Patch *patch)
+static void HeatRows(const Assembly *to, const Reach *r, const NodeFactors *k, const OutputSlopes *DB, Patch *patch)
 {
   const double *S   = r->S;
   RowSum        sum = {.n = 0};
@@ -137,30 +141,30 @@ static void HeatRows(const Assembly *to, const Reach *r, const NodeFactors *k, c
   for (int j = 0; j < CL_DIM; j++)
     TERM(OUT_HEAT + j, r->G[a][j]);
   RowOfNodes(patch, PlaceT(&to->fs), r->n, row);
-  RowSumInto(&sum, r->n, length, patch->fresh, row);
+  RowSumInto(&sum, r->n, DB->length, patch->fresh, row);
 }
 
-static void NodeRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
-                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+static void NodeRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k, const OutputSlopes *DB,
+                     Patch *patch)
 {
   const FieldSet *fs = &to->fs;
 
   if (fs->solid)
-    SolidRows(m, to, r, k, DB, length, patch);
-  MassRows(m, to, r, DB, length, patch);
+    SolidRows(m, to, r, k, DB, patch);
+  MassRows(m, to, r, DB, patch);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f] && PlaceV(fs, f) >= 0)
-      MomentumRows(m, to, r, f, k, DB, length, patch);
+      MomentumRows(m, to, r, f, k, DB, patch);
   }
   if (fs->heat)
-    HeatRows(to, r, k, DB, length, patch);
+    HeatRows(to, r, k, DB, patch);
   patch->fresh = false;
 }
 
 /* The lumped terms couple a node only with itself.  Eliminated fluids move with the skeleton as far as drag holds them
    (173). */
 static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
-                     const double *w, double *block, int ld)
+                     const double *w, double *block)
 {
   const double inertia = fs->inertia ? S / dt : 0.0, per_dt = fs->inertia ? 1.0 / dt : 0.0;
 
@@ -168,7 +172,7 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     const int vs = PlaceVs(fs) + i;
 
     if (fs->solid)
-      block[vs * ld + vs] += inertia * out[OUT_M];
+      block[vs * ROW_MOST + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
       const int v = PlaceV(fs, f) + i;
 
@@ -179,30 +183,30 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 
       if (PlaceV(fs, f) < 0) {
         if (fs->solid && drag > 0.0)
-          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + mass);
+          block[vs * ROW_MOST + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + mass);
         continue;
       }
-      block[v * ld + v] += mass + drag;
+      block[v * ROW_MOST + v] += mass + drag;
       if (!fs->solid)
         continue;
-      block[v * ld + vs] -= drag;
-      block[vs * ld + v] += inertia * out[OUT_M + 1 + f];
+      block[v * ROW_MOST + vs] -= drag;
+      block[vs * ROW_MOST + v] += inertia * out[OUT_M + 1 + f];
     }
   }
   if (fs->heat)
-    block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
+    block[PlaceT(fs) * ROW_MOST + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
 /* The skeleton's acceleration in (308). */
 static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT_COUNT], const NodeFactors *k,
-                         double dt, double *block, int ld)
+                         double dt, double *block)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f] || PlaceV(fs, f) < 0)
       continue;
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] +=
+        block[(PlaceV(fs, f) + i) * ROW_MOST + PlaceVs(fs) + j] +=
             k->flow[f] * k->kr[f] * out[OUT_MI + f] * (A->A[cl_symmetric[i][j]] - (i == j ? k->share[f] : 0.0)) / dt;
     }
   }
@@ -232,7 +236,7 @@ static void ParticleBlock(const Model *m, const Assembly *to, const double *x, c
   NodeFactors        factor[CL_NODES];
   const double      *D[OUT_COUNT];
   double            *row[OUT_COUNT];
-  double             DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
+  OutputSlopes       DB;
 
   SlopesBegin(fs->n * r->n, m->cell != NULL, slopes);
   for (int b = 0; b < r->n; b++) {
@@ -247,15 +251,15 @@ static void ParticleBlock(const Model *m, const Assembly *to, const double *x, c
   }
   for (int k = 0; k < to->nout; k++) {
     D[k]   = o->D[to->out[k]];
-    row[k] = DB[to->out[k]];
+    row[k] = DB.of[to->out[k]];
   }
   SlopesApply(slopes, to->nout, D, row);
-  NodeRows(m, to, r, factor, DB, slopes->length, patch);
+  DB.length = slopes->length;
+  NodeRows(m, to, r, factor, &DB, patch);
   for (int a = 0; a < r->n; a++) {
-    Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[PHASE_COUNT * r->node[a]], &patch->v[a][0][a * fs->n],
-             ROW_MOST);
+    Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[PHASE_COUNT * r->node[a]], &patch->v[a][0][a * fs->n]);
     if (m->beds && fs->solid && fs->inertia)
-      DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], m->stage.dt, &patch->v[a][0][a * fs->n], ROW_MOST);
+      DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], m->stage.dt, &patch->v[a][0][a * fs->n]);
   }
 }
 

@@ -29,24 +29,27 @@ PetscErrorCode ReducedUnits(Model *m, Reduced *r)
 }
 
 /* Which neighbours a node has, and their numbers, in the order of their columns. */
-static int RowNodes(const Model *m, PetscInt I, int k[NEIGHBOURS], PetscInt number[NEIGHBOURS])
-{
-  int n = 0;
+typedef struct {
+  int      n, k[NEIGHBOURS];
+  PetscInt number[NEIGHBOURS];
+} Columns;
 
+static void ColumnsOf(const Model *m, PetscInt I, Columns *c)
+{
+  c->n = 0;
   for (int q = 0; q < NEIGHBOURS; q++) {
     const PetscInt K = ModelNeighbour(m, I, q);
     int            at;
 
     if (K < 0)
       continue;
-    for (at = n++; at > 0 && number[at - 1] > m->map.global[K]; at--) {
-      number[at] = number[at - 1];
-      k[at]      = k[at - 1];
+    for (at = c->n++; at > 0 && c->number[at - 1] > m->map.global[K]; at--) {
+      c->number[at] = c->number[at - 1];
+      c->k[at]      = c->k[at - 1];
     }
-    number[at] = m->map.global[K];
-    k[at]      = q;
+    c->number[at] = m->map.global[K];
+    c->k[at]      = q;
   }
-  return n;
 }
 
 /* Rows and columns of prescribed unknowns stay empty but for what they would have on the diagonal. */
@@ -74,20 +77,20 @@ static const double *ReducedRow(const Reduced *r, PetscInt I, int k, int i)
 typedef struct {
   PetscInt *from, *col; /* first entry of each row, [rows + 1]; columns of the entries */
   double   *v;
+  PetscInt  count; /* of the entries so far */
 } Rows;
 
-/* Adds what row i of node I has in the columns of a group that is not zero, and the diagonal, of n neighbours. */
-static void AddRow(const Reduced *r, PetscInt I, int i, int t, int n, const int *k, const PetscInt *number, Rows *to,
-                   PetscInt *count)
+/* Adds what row i of node I has in the columns of group t that is not zero, and the diagonal. */
+static void AddRow(const Reduced *r, PetscInt I, int i, int t, const Columns *c, Rows *to)
 {
-  for (int b = 0; b < n; b++) {
-    const double *row = ReducedRow(r, I, k[b], i);
+  for (int b = 0; b < c->n; b++) {
+    const double *row = ReducedRow(r, I, c->k[b], i);
 
     for (int j = r->first[t]; j < r->first[t] + r->count[t]; j++) {
-      if (row[j] == 0.0 && (k[b] != NEIGHBOURS / 2 || i != j))
+      if (row[j] == 0.0 && (c->k[b] != NEIGHBOURS / 2 || i != j))
         continue;
-      to->col[*count]   = number[b] * r->count[t] + j - r->first[t];
-      to->v[(*count)++] = row[j];
+      to->col[to->count] = c->number[b] * r->count[t] + j - r->first[t];
+      to->v[to->count++] = row[j];
     }
   }
 }
@@ -111,19 +114,17 @@ static PetscInt MostEntries(const Model *m, const Reduced *r, int s, int t)
 /* Rows of group s in the columns of group t. */
 static void FillRows(const Model *m, const Reduced *r, int s, int t, Rows *to)
 {
-  PetscInt count = 0;
+  Columns c;
 
+  to->count = 0;
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    PetscInt  number[NEIGHBOURS];
-    int       k[NEIGHBOURS];
-    const int n = RowNodes(m, I, k, number);
-
+    ColumnsOf(m, I, &c);
     for (int i = 0; i < r->count[s]; i++) {
-      to->from[I * r->count[s] + i] = count;
-      AddRow(r, I, r->first[s] + i, t, n, k, number, to, &count);
+      to->from[I * r->count[s] + i] = to->count;
+      AddRow(r, I, r->first[s] + i, t, &c, to);
     }
   }
-  to->from[m->map.n_owned * r->count[s]] = count;
+  to->from[m->map.n_owned * r->count[s]] = to->count;
 }
 
 static PetscErrorCode CreateBlock(Model *m, const Reduced *r, int s, int t, Mat *A)

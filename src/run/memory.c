@@ -97,7 +97,7 @@ static bool TakesImplicitSteps(const Case *c)
   bool takes = false;
 
   for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++)
-    takes = takes || ((INTEGRATORS_IMPLICIT >> CaseInStage(c, k)->integrator) & 1u);
+    takes = takes || (IntegratorKinds(CaseInStage(c, k)->integrator) & BY_IMPLICIT);
   return takes;
 }
 

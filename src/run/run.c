@@ -176,7 +176,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K",
       StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
       StepperCase(s)->nstage ? "by stage"
-      : s->auto_.on          ? case_integrator[INTEGRATOR_AUTO]
+      : s->auto_.on          ? case_integrator[StepperCase(s)->integrator]
                              : StepperName(s),
       z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, error[0], error[1],
       error[2]));

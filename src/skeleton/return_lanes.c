@@ -100,8 +100,9 @@ static __attribute__((noinline)) void Pass(const Plasticity *law, const Fixed *c
     for (int i = 0; i < SMOOTH_UNKNOWNS; i++)
       x[i] = n->x[i][q];
     StrengthAtIterate(&p, &fixed, &at, eps[q], x[X_EPS], &k);
-    const double half = tan(0.5 * k.phi), per = 1.0 / (1.0 + half * half); /* sine and cosine would be one call */
-    SmoothEquations(&t, &k, 2.0 * half * per, (1.0 - half * half) * per, tan(k.psi), fixed.roundness, x, false, &s);
+    const double       half = tan(0.5 * k.phi), per = 1.0 / (1.0 + half * half); /* sine and cosine would be one call */
+    const SmoothAngles a = {2.0 * half * per, (1.0 - half * half) * per, tan(k.psi), fixed.roundness};
+    SmoothEquations(&t, &k, &a, x, false, &s);
     const double size = SmoothSize(&s),
                  room = YIELD_ROUND_OFF * k.c + 1e-2 * YIELD_ROUND_OFF * (fabs(t.y[0]) + fabs(t.y[2]));
     const int close = size <= SMOOTH_CLOSE * n->scale[q], falls = first | (size < (1.0 - 1e-4) * n->size[q]),

@@ -267,10 +267,9 @@ static double Excess(const Trial3 *t, double eps, const Closest *o, const Streng
   return eps - t->eps - n;
 }
 
-static void Finish(const Trial3 *t, const Closest *o, const Strength *k, double slope, const double by[BY_COUNT],
-                   const double y_eps[3], bool slopes, Returned *r)
+static void Finish(const Closest *o, const Strength *k, double slope, const double by[BY_COUNT], const double y_eps[3],
+                   bool slopes, Returned *r)
 {
-  (void)t;
   for (int i = 0; i < 3; i++) {
     r->y[i] = o->y[i];
     for (int j = 0; slopes && j < BY_COUNT; j++) {
@@ -307,7 +306,7 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
       next = 0.5 * (lo + hi);
     if (fabs(next - eps) <= close || hi - lo <= 4.0 * close || given) {
       r->eps = given ? eps - f : eps;
-      Finish(t, &o, &k, slope, by, y_eps, slopes, r);
+      Finish(&o, &k, slope, by, y_eps, slopes, r);
       return slope > 0.0;
     }
     eps = next;
@@ -331,6 +330,6 @@ bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r)
   Apex(&k, &o);
   for (int i = 0; i < 3; i++)
     y_eps[i] = o.c[i] * k.c_e + o.phi[i] * k.phi_e;
-  Finish(t, &o, &k, 1.0, by, y_eps, slopes, r);
+  Finish(&o, &k, 1.0, by, y_eps, slopes, r);
   return true;
 }

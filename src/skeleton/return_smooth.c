@@ -16,7 +16,8 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sm
   Strength k;
 
   StrengthAt(t, t->eps + x[X_EPS], &k);
-  SmoothEquations(t, &k, sin(k.phi), cos(k.phi), tan(k.psi), FlowRoundness(t->law), x, slopes, s);
+  const SmoothAngles a = {sin(k.phi), cos(k.phi), tan(k.psi), FlowRoundness(t->law)};
+  SmoothEquations(t, &k, &a, x, slopes, s);
 }
 
 /* A z = b for m right sides, with pivots; both are overwritten.  False if A is singular. */

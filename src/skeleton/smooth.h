@@ -14,14 +14,19 @@ typedef struct {
   double r[SMOOTH_UNKNOWNS], A[SMOOTH_UNKNOWNS][SMOOTH_UNKNOWNS], by[SMOOTH_UNKNOWNS][BY_COUNT];
 } SmoothSystem;
 
-/* k: strength at the strain of x, si and co of its phi, tp = tan(psi); slopes: fill s->by too. */
-INLINE void SmoothEquations(const Trial3 *t, const Strength *k, double si, double co, double tp, double roundness,
-                            const double x[SMOOTH_UNKNOWNS], bool slopes, SmoothSystem *s)
+/* Of the friction angle phi and the dilation psi: sin(phi), cos(phi), tan(psi); roundness of the potential's end. */
+typedef struct {
+  double si, co, tp, roundness;
+} SmoothAngles;
+
+/* k: strength at the strain of x, a: its angles; slopes: fill s->by too. */
+INLINE void SmoothEquations(const Trial3 *t, const Strength *k, const SmoothAngles *a, const double x[SMOOTH_UNKNOWNS],
+                            bool slopes, SmoothSystem *s)
 {
   FlowGradient P;
   double       dF[3], dn[3], F_phi, n_y[3] = {0.0, 0.0, 0.0}, n_eps = 0.0, n_S = 0.0;
 
-  FlowGradientOf(si, co, tp, roundness, x, &P);
+  FlowGradientOf(a->si, a->co, a->tp, a->roundness, x, &P);
   const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
 
 #pragma GCC unroll 3
@@ -47,7 +52,7 @@ INLINE void SmoothEquations(const Trial3 *t, const Strength *k, double si, doubl
     s->A[i][X_L]   = DP;
     s->A[i][X_EPS] = L * (t->G2 * P_eps + t->lame * tr_eps);
   }
-  s->r[X_L]   = YieldOf(si, co, k->c, x, dF, &F_phi);
+  s->r[X_L]   = YieldOf(a->si, a->co, k->c, x, dF, &F_phi);
   s->r[X_EPS] = t->E * x[X_EPS] - L * n;
 #pragma GCC unroll 3
   for (int j = 0; j < 3; j++) {

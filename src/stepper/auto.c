@@ -230,9 +230,10 @@ static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
   if (z->votes < LOOKS_HYBRID * z->patience)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "t = %s: hybrid -> sdirk2: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones "
-                        "of %s that would do\n",
-                        TimeAt(z->t).s, hybrid, implicit, TimeWords(dt, 2).s));
+                        "t = %s: hybrid -> %s: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones of %s "
+                        "that would do\n",
+                        TimeAt(z->t).s, case_integrator[StepperSchemeOf(INTEGRATOR_AUTO)->kind], hybrid, implicit,
+                        TimeWords(dt, 2).s));
   PetscCall(GoOver(s, AUTO_IMPLICIT, START * dt, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -241,7 +242,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
 {
   StepperState *z      = &s->state;
   const Case   *c      = StepperCase(s);
-  const bool    chosen = c->integrator == INTEGRATOR_AUTO;
+  const bool    chosen = IntegratorKinds(c->integrator) & BY_TURNS;
 
   PetscFunctionBeginUser;
   s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
@@ -258,7 +259,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
     s->scheme = StepperSchemeOf(INTEGRATOR_HYBRID);
   PetscCall(
       PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", StepperName(s), s->auto_.on ? ", for now" : ""));
-  const char *word = SceneStabilisesImplicit(&c->scene);
+  const char *word = SceneUnknown(&c->scene, BY_EXPLICIT);
   if (s->auto_.on && word)
     PetscCall(PetscPrintf(s->model->grid.comm, "; hybrid goes without %s", word));
   PetscCall(PetscPrintf(s->model->grid.comm, "\n"));

@@ -10,13 +10,12 @@
 
 static PetscErrorCode Create(Stepper *s)
 {
-  const Case           *c = StepperCase(s);
-  const ExplicitOptions o = {.drag_implicit = c->integrator != INTEGRATOR_EXPLICIT,
-                             .paper         = c->integrator == INTEGRATOR_PAPER,
-                             .damping       = c->damping,
-                             .mass_scaling  = c->mass_scaling};
+  const Case     *c = StepperCase(s);
+  ExplicitOptions o = s->scheme->form;
 
   PetscFunctionBeginUser;
+  o.damping      = c->damping;
+  o.mass_scaling = c->mass_scaling;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
   PetscCall(ParticlesCreate(c->scene.fields.has, &s->good));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,11 +265,12 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   }
 }
 
-#define WITHOUT_MATRIX(integrator)                                                                                     \
+#define WITHOUT_MATRIX(integrator, ...)                                                                                \
   {                                                                                                                    \
-    .kind = (integrator), .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready, .check = Check     \
+    .kind = (integrator), .advance = Advance, .form = {__VA_ARGS__}, .create = Create, .destroy = Destroy,             \
+    .ready = Ready, .check = Check                                                                                     \
   }
 
-const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX(INTEGRATOR_HYBRID);
-const StepperScheme StepperScheme_Paper    = WITHOUT_MATRIX(INTEGRATOR_PAPER);
+const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX(INTEGRATOR_HYBRID, .drag_implicit = true);
+const StepperScheme StepperScheme_Paper    = WITHOUT_MATRIX(INTEGRATOR_PAPER, .drag_implicit = true, .paper = true);
 const StepperScheme StepperScheme_Explicit = WITHOUT_MATRIX(INTEGRATOR_EXPLICIT);

@@ -1,13 +1,8 @@
 /* The stages of a run: which case, integrator and step control hold, and what one stage hands to the next. */
 #include "clathra/stepper.h"
 
-static const StepperScheme *const schemes[INTEGRATOR_COUNT] = {
-    [INTEGRATOR_SDIRK2]   = &StepperScheme_Sdirk2,
-    [INTEGRATOR_EULER]    = &StepperScheme_Euler,
-    [INTEGRATOR_HYBRID]   = &StepperScheme_Hybrid,
-    [INTEGRATOR_EXPLICIT] = &StepperScheme_Explicit,
-    [INTEGRATOR_PAPER]    = &StepperScheme_Paper,
-    [INTEGRATOR_AUTO]     = &StepperScheme_Sdirk2}; /* until the forecast is known, and in turn with hybrid */
+#define SCHEME(name, word, scheme, kinds) &StepperScheme_##scheme,
+static const StepperScheme *const schemes[INTEGRATOR_COUNT] = {CL_INTEGRATORS(SCHEME)};
 
 const StepperScheme *StepperSchemeOf(Integrator kind)
 {

@@ -91,11 +91,14 @@ check_true("a scene without hydrate is no hmc", "fields: solid, water, gas;" in 
 
 # ---------------------------------------------------------------- keys of another integrator
 EXPLICIT = [w for k, v in (("cfl", 0.5), ("force_dt", "yes"), ("damping", 0.1), ("mass_scaling", 2)) for w in (f"-stepper_{k}", v)]
-IMPLICIT = ["-stepper_tol", "1e-2", "-stepper_dt_min", "1 ns", "-stepper_error_exponent", 4, "-stabilisation_ghost_penalty", 0.01]
-for stepper, others in (("sdirk2", EXPLICIT), ("euler", EXPLICIT), ("hybrid", IMPLICIT), ("hybrid_paper", IMPLICIT), ("auto", [])):
+IMPLICIT = ["-stepper_tol", "1e-2", "-stepper_dt_min", "1 ns", "-stepper_error_exponent", 4, "-stabilisation_ghost_penalty", 0.01, "-newton_refactor", 3, "-newton_operator", "assembled"]
+MEAN = ["-mean_strain", 0.5]
+for stepper, others in (("sdirk2", EXPLICIT), ("euler", EXPLICIT), ("hybrid", IMPLICIT), ("hybrid_paper", [*IMPLICIT, *MEAN]), ("auto", [])):
     every = {w: "sdirk2, euler, auto" if w in IMPLICIT else "hybrid, explicit" for w in others[::2]}
-    given = others or [*EXPLICIT, *IMPLICIT]
+    given = others or [*EXPLICIT, *IMPLICIT, *MEAN]
     says(f"terzaghi by {stepper} with keys of {'others' if others else 'both'}", every, CASES / "terzaghi", "-stepper_type", stepper, "-inertia", "yes", *map(str, given))
+says("terzaghi by auto without inertia, where hybrid takes no step", {w: "auto; hybrid does not know inertia: no" for w in EXPLICIT[::2]},
+     CASES / "terzaghi", "-stepper_type", "auto", "-inertia", "no", *map(str, [*EXPLICIT, *IMPLICIT, *MEAN]))  # fmt: skip
 STAGED = ("-stages", "one,two", "-time_end", "2 s", "-output_times", "2 s", "-output_probe_every", "1 s", "-stage_one_end", "1 s", "-stage_two_end", "2 s", "-stage_two_stepper_type", "hybrid", "-stage_two_stepper_dt_max", "1 s", "-inertia", "yes")
 says("a key that one of two stages knows", {}, CASES / "terzaghi", *STAGED, "-stepper_damping", "0.1")
 says("... given to the other one", {"-stage_one_stepper_damping": "hybrid"}, CASES / "terzaghi", *STAGED, "-stage_one_stepper_damping", "0.1")
