@@ -42,8 +42,8 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
 /* Of a particle's outputs in the unknowns of its nodes, so many in all. */
 typedef struct {
-  double of[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
-  int    length;
+  const double (*of)[ROW_MOST]; /* [OUT_COUNT] */
+  int length;
 } OutputSlopes;
 
 /* Adds `expression` of node a, of each of them, times the slopes DB of an output to a row. */
@@ -236,7 +236,7 @@ static void ParticleBlock(const Model *m, const Assembly *to, const double *x, c
   NodeFactors        factor[CL_NODES];
   const double      *D[OUT_COUNT];
   double            *row[OUT_COUNT];
-  OutputSlopes       DB;
+  double             DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
 
   SlopesBegin(fs->n * r->n, m->cell != NULL, slopes);
   for (int b = 0; b < r->n; b++) {
@@ -251,11 +251,10 @@ static void ParticleBlock(const Model *m, const Assembly *to, const double *x, c
   }
   for (int k = 0; k < to->nout; k++) {
     D[k]   = o->D[to->out[k]];
-    row[k] = DB.of[to->out[k]];
+    row[k] = DB[to->out[k]];
   }
   SlopesApply(slopes, to->nout, D, row);
-  DB.length = slopes->length;
-  NodeRows(m, to, r, factor, &DB, patch);
+  NodeRows(m, to, r, factor, &(OutputSlopes){(const double(*)[ROW_MOST])DB, slopes->length}, patch);
   for (int a = 0; a < r->n; a++) {
     Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[PHASE_COUNT * r->node[a]], &patch->v[a][0][a * fs->n]);
     if (m->beds && fs->solid && fs->inertia)
