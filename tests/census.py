@@ -50,11 +50,11 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 239,
     "... that choose numerics": 16,
-    "lines of C in src and include": 44811,
+    "lines of C in src and include": 44812,
     f"functions with {MANY} parameters or more": 12,
     "comments that are a number alone": 0,
     "files that print warnings": 1,
-    "words of docs and README": 38058,
+    "words of docs and README": 38002,
     "words of the equations": 9798,
     "files in scripts": 13,
 }

@@ -73,7 +73,7 @@ static void AddMotion(const Particles *P, const Particles *then, PetscInt p, Pet
   for (int d = 0; d < CL_DIM; d++)
     AddSquare(now[P_U + d], was[P_U + d], p, q, &sum->change[4]);
   AddSquare(now[P_EPS], was[P_EPS], p, q, &sum->change[5]);
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < CL_TENSOR; k++)
     AddSquare(now[P_SIG + k], was[P_SIG + k], p, q, &sum->change[6]);
   double mass = 0.0, jump = 0.0;
   for (int k = 0; k < 4; k++)
