@@ -1,8 +1,6 @@
 /* Between the second and the third pass: what particles store of the increments that their nodes have, where it is not
    what lumped storage (37) says; (413). */
-#include "clathra/laws_batch.h"
 #include "gathered.h"
-#include "storage.h"
 
 INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
 {

@@ -109,7 +109,7 @@ check_true("a state that one rank finds inadmissible is refused by both", "refus
 
 # auto's decisions rest on what all ranks know, also where one of them has no particles.
 try:
-    done = launch(binary(), HERE / "cases" / "auto_uneven.yaml", "-quiet", "-stepper_max_steps", "40", ranks=2, out=scratch() / "out", timeout=100)
+    done = launch(binary(), HERE / "cases" / "auto_uneven.yaml", "-quiet", ranks=2, out=scratch() / "out", timeout=100)
     said = done.stdout if done.returncode == 0 else f"exit code {done.returncode}: {done.stdout[-300:]}"
 except subprocess.TimeoutExpired:
     said = "the ranks wait for each other"
