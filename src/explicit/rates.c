@@ -526,25 +526,36 @@ INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
 /* beta of (413), with the slopes above. */
 INLINE void ConsistentShares(Explicit *e, const Set s, Run r, const Volumes *v)
 {
-  const double *sg = s.fluids == 2 ? e->t[T_SG] : NULL;
+  const double *restrict ww = e->t[T_SLOPE] + r.p, *restrict wg = e->t[T_SLOPE + 1] + r.p,
+                         *restrict gw = e->t[T_SLOPE + 3] + r.p, *restrict gg = e->t[T_SLOPE + 4] + r.p;
+  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict sg = s.fluids == 2 ? e->t[T_SG] + r.p : NULL;
+  const double t = e->stable, drags = e->o.drag_implicit ? 1.0 : 0.0, per_scale = 1.0 / e->o.mass_scaling;
+  double *restrict beta = e->t[T_CONSISTENT] + r.p;
+  double k2[BLOCK], open[BLOCK], f[BLOCK] = {0.0};
 
-  for (PetscInt p = r.p; p < r.p + r.n; p++) {
-    const double phi = v->phi[p - r.p], Sh = v->Sh[p - r.p],
-                 share[PHASE_COUNT] = {sg ? 1.0 - sg[p] : 1.0, sg ? sg[p] : 0.0};
-    const double open = Openness(s, r.mat, phi, Sh), ww = e->t[T_SLOPE][p], gg = sg ? e->t[T_SLOPE + 4][p] : 1.0;
-    const double det = sg ? ww * gg - e->t[T_SLOPE + 1][p] * e->t[T_SLOPE + 3][p] : ww;
-    double       f   = 0.0, x[CL_DIM];
+  for (int q = 0; q < r.n; q++) {
+    double x[CL_DIM];
 
-    ParticlePlace(&e->m->P, p, x);
-    for (int k = 0; k < s.fluids; k++) {
-      const double fill  = phi * (1.0 - Sh) * share[k] / e->o.mass_scaling;
-      const double decay = e->o.drag_implicit ? open * e->t[T_DRAG + k][p] * fill / e->t[T_RHO + k][p] : 0.0;
-
-      f += FluidGrowth(e->stable, GridHighest2At(&e->m->grid, x) * e->m->P.f[P_V][p] * fill * (k ? ww : gg) / det,
-                       decay);
-    }
-    e->t[T_CONSISTENT][p] = ConsistentShare(f);
+    ParticlePlace(&e->m->P, r.p + q, x);
+    k2[q]   = GridHighest2At(&e->m->grid, x);
+    open[q] = drags * Openness(s, r.mat, v->phi[q], v->Sh[q]);
   }
+  for (int k = 0; k < s.fluids; k++) {
+    const double *restrict drag = e->t[T_DRAG + k] + r.p, *restrict rho = e->t[T_RHO + k] + r.p;
+
+    INDEPENDENT
+    for (int q = 0; q < r.n; q++) {
+      const double s_k  = s.fluids == 1 ? 1.0
+                          : k           ? sg[q]
+                                        : 1.0 - sg[q],
+                   fill = v->phi[q] * (1.0 - v->Sh[q]) * s_k * per_scale;
+      const double own  = s.fluids == 1 ? 1.0 / ww[q] : (k ? ww[q] : gg[q]) / (ww[q] * gg[q] - wg[q] * gw[q]);
+
+      f[q] += FluidGrowth(t, k2[q] * V[q] * fill * own, open[q] * drag[q] * fill / rho[q]);
+    }
+  }
+  for (int q = 0; q < r.n; q++)
+    beta[q] = ConsistentShare(f[q]);
 }
 
 /* Divergence of a fluid's Darcy flux at the particle, 1/s. */

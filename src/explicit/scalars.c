@@ -162,11 +162,10 @@ static PetscErrorCode Correct(Explicit *e)
     const double *stored = &e->given[I * LANES], *d = &e->C[I * width];
     double       *r = &e->R[I * LANES * Rows(R_Count(s))];
 
-    PetscCall(PetscArraycpy(&e->first[I * LANES], d, n));
-    PetscCall(PetscArrayzero(r, n));
-    for (int k = 0; k < s.fluids; k++) {
-      r[k] = -stored[k];
-      for (int j = 0; j < s.fluids; j++)
+    for (int k = 0; k < n; k++) {
+      e->first[I * LANES + k] = d[k];
+      r[k]                    = k < s.fluids ? -stored[k] : 0.0;
+      for (int j = 0; k < s.fluids && j < s.fluids; j++)
         r[k] += stored[Stored_Matrix(s) + k * s.fluids + j] * d[j];
     }
   }

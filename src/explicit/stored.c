@@ -7,9 +7,14 @@ INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Gathered g;
   _Alignas(64) Given    o;
   Weights               w;
-  const int             n = s.fluids;
+  const int             n    = s.fluids;
+  double                most = 0.0;
 
   (void)dt;
+  for (int q = 0; q < r.n; q++)
+    most = Largest(most, e->t[T_CONSISTENT][r.p + q]);
+  if (most == 0.0)
+    return;
   WeightsOf(e, r, &w);
   Gather(e, e->C, Rows(C_Count(s)), 0, r, &w, &g);
   GiveNothing(r, Stored_Count(s), 0, &o);
