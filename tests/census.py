@@ -50,7 +50,7 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 239,
     "... that choose numerics": 16,
-    "lines of C in src and include": 44825,  # 12 more: consistent storage of hybrid, in lanes
+    "lines of C in src and include": 44821,  # 8 more: consistent storage of hybrid, in lanes
     f"functions with {MANY} parameters or more": 12,
     "comments that are a number alone": 0,
     "files that print warnings": 1,

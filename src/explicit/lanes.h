@@ -156,11 +156,11 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
-                     fluids with layers the flow per permeability (311) */
-  double   *gain; /* [rows][3] the same of the scalars */
-  double   *given, *first; /* [rows][LANES] (413): Stored_..., the increments without it */
-  bool      again;         /* (37) is solved for what (413) gives */
+  double *inc;     /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
+                      fluids with layers the flow per permeability (311) */
+  double   *gain;  /* [rows][3] the same of the scalars */
+  double   *given; /* [rows][LANES] (413): Stored_... */
+  bool      again; /* (37) is solved for what (413) gives */
   double   *cell;  /* [rows][CELL_MEAN] of the cell behind a node: sums of PartMoment, m^3, last CELL_PRESSURE */
   CellMean *mean;  /* [rows] */
   double   *swell; /* [rows] mean stress through a cell's volume change, J, of this rank; from CellsMotion on

@@ -30,17 +30,14 @@ static PetscErrorCode Allocate(Explicit *e)
     PetscCall(PetscCalloc1(n * CL_DIM * ALTERNATION_COUNT, &e->alternates));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
-  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (Corrects(e) ? 2 * LANES : 0)) + LANES, &e->raw));
-  at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
-  e->A = at;
-  e->G = e->A + n * A;
-  e->B = e->G + n * A;
-  e->R = e->B + n * B;
-  e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  if (Corrects(e)) {
-    e->given = at + n * (2 * A + B + R + C);
-    e->first = e->given + n * LANES;
-  }
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (Corrects(e) ? LANES : 0)) + LANES, &e->raw));
+  at       = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
+  e->A     = at;
+  e->G     = e->A + n * A;
+  e->B     = e->G + n * A;
+  e->R     = e->B + n * B;
+  e->C     = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
+  e->given = Corrects(e) ? at + n * (2 * A + B + R + C) : NULL;
   PetscCall(PetscCalloc7(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->lean, n, &e->torn, n, &e->node,
                          GridPaddedSize(&e->m->grid), &e->slot));
   for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)

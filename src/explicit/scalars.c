@@ -60,19 +60,21 @@ static void Join(Explicit *e, PetscInt I)
   }
 }
 
-/* Increments of this pass. */
+/* Increments, to those so far where the node solves again. */
 INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
 {
   const int     n = Scalars(s);
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *r = &e->R[I * LANES * Rows(R_Count(s))];
-  double       *c = &e->C[I * C_Width(s)], T;
+  double       *c = &e->C[I * C_Width(s)], d[3], T;
 
   for (int k = 0; k < n; k++)
-    c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
+    d[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
-    c[s.fluids] = e->again ? 0.0 : T - a[s.fluids] / a[A_C(s)];
-    e->heat_in += Lacking(s, r, s.fluids, c);
+    d[s.fluids] = e->again ? 0.0 : T - a[s.fluids] / a[A_C(s)];
+    e->heat_in += Lacking(s, r, s.fluids, d);
   }
+  for (int k = 0; k < n; k++)
+    c[k] = e->again ? c[k] + d[k] : d[k];
 }
 
 /* Row that the particles read: increments, end values, velocity of the skeleton. */
@@ -163,8 +165,7 @@ static PetscErrorCode Correct(Explicit *e)
     double       *r = &e->R[I * LANES * Rows(R_Count(s))];
 
     for (int k = 0; k < n; k++) {
-      e->first[I * LANES + k] = d[k];
-      r[k]                    = k < s.fluids ? -stored[k] : 0.0;
+      r[k] = k < s.fluids ? -stored[k] : 0.0;
       for (int j = 0; k < s.fluids && j < s.fluids; j++)
         r[k] += stored[Stored_Matrix(s) + k * s.fluids + j] * d[j];
     }
@@ -172,8 +173,6 @@ static PetscErrorCode Correct(Explicit *e)
   e->again = true;
   PetscCall(Solve(e));
   e->again = false;
-  for (PetscInt I = 0; I < e->rows; I++)
-    AddRow(&e->C[I * width], 1.0, &e->first[I * LANES], n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
